@@ -1,0 +1,1 @@
+//! Real-time water for the Bevy engine.

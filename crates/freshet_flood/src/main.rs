@@ -1,0 +1,2 @@
+//! The command `freshet-flood`.
+fn main() {}

@@ -1,0 +1,2 @@
+//! The few commands a newcomer types.
+fn main() {}
