@@ -1,0 +1,266 @@
+//! Gerstner waves on water of finite depth with surface tension.
+//!
+//! A wave train of wavenumber `k = |k|` moves a particle that rests at `x₀` to
+//!
+//! ```text
+//! x = x₀ − Σ f k̂ᵢ Aᵢ sin θᵢ        y = Σ f Aᵢ cos θᵢ        θᵢ = kᵢ·x₀ − ωᵢ t + φᵢ
+//! ```
+//!
+//! (Gerstner 1802; M06 eq. for the ocean), with `ω² = (g k + (σ/ρ) k³) tanh(k d)` (Airy 1845). The factor `f` is
+//! [`shallow_fade`], the same for all trains of one place. The surface shader's `waves.wgsl` holds the same equations.
+use core::f32::consts::TAU;
+use glam::{Vec2, Vec3};
+
+/// Standard acceleration of gravity, m/s².
+pub const GRAVITY: f32 = 9.81;
+/// Density of fresh water at 20 °C, kg/m³.
+pub const WATER_DENSITY: f32 = 998.2;
+/// Surface tension of clean water against air at 20 °C, N/m (IAPWS 1994).
+pub const SURFACE_TENSION: f32 = 0.0728;
+
+/// Angular frequency, rad/s, of a small wave of `wavenumber` (rad/m) on water of `depth` (m, may be infinite).
+///
+/// `ω² = (g k + (σ/ρ) k³) tanh(k d)`.
+pub fn angular_frequency(wavenumber: f32, depth: f32) -> f32 {
+    let k = f64::from(wavenumber);
+    let tension = f64::from(SURFACE_TENSION / WATER_DENSITY);
+    libm::sqrt((f64::from(GRAVITY) * k + tension * k * k * k) * libm::tanh(k * f64::from(depth))) as f32
+}
+
+/// Share of the waves' height that is left at `depth` (m): 0 on dry land, 1 from `fade_depth` (m) on, smooth between.
+///
+/// A `fade_depth` of zero switches the fading off.
+pub fn shallow_fade(depth: f32, fade_depth: f32) -> f32 {
+    if fade_depth <= 0.0 {
+        return 1.0;
+    }
+    let t = (depth / fade_depth).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// One wave train, as a user describes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wave {
+    /// Direction of travel in xz; need not be normalised.
+    pub direction: Vec2,
+    /// Distance between crests, m, > 0.
+    pub wavelength: f32,
+    /// Wavenumber × amplitude, 0…1: 0 is flat, 1 has cusps at its crests.
+    pub steepness: f32,
+    /// Phase at the origin at time zero, rad.
+    pub phase: f32,
+}
+
+/// One wave train at one instant, ready to be summed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WaveTrain {
+    /// Wave vector in xz, rad/m.
+    pub wave_vector: Vec2,
+    /// Amplitude, m.
+    pub amplitude: f32,
+    /// Angular frequency, rad/s.
+    pub angular_frequency: f32,
+    /// `φ − ω t`, reduced to one turn, rad.
+    pub phase: f32,
+}
+
+impl WaveTrain {
+    /// The train of `wave` on water of `depth` (m) at `time` (s). The phase is reduced in double precision, so that
+    /// it stays exact for days.
+    pub fn at(wave: &Wave, depth: f32, time: f64) -> Self {
+        let wavenumber = TAU / wave.wavelength;
+        let angular_frequency = angular_frequency(wavenumber, depth);
+        let phase = (f64::from(wave.phase) - f64::from(angular_frequency) * time) % core::f64::consts::TAU;
+        Self {
+            wave_vector: wave.direction.normalize_or(Vec2::X) * wavenumber,
+            amplitude: wave.steepness / wavenumber,
+            angular_frequency,
+            phase: phase as f32,
+        }
+    }
+
+    fn sin_cos(&self, rest: Vec2) -> (f32, f32) {
+        libm::sincosf(self.wave_vector.dot(rest) + self.phase)
+    }
+}
+
+/// All wave trains of a water at one instant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WaveField {
+    /// The trains; their order is the order of summation.
+    pub trains: Vec<WaveTrain>,
+}
+
+impl WaveField {
+    /// The field of `waves` on water of `depth` (m) at `time` (s).
+    pub fn at(waves: &[Wave], depth: f32, time: f64) -> Self {
+        Self { trains: waves.iter().map(|wave| WaveTrain::at(wave, depth, time)).collect() }
+    }
+
+    /// Where the particle that rests at `rest` (xz, m) is displaced to, m; `fade` is its [`shallow_fade`].
+    pub fn displacement(&self, rest: Vec2, fade: f32) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        for train in &self.trains {
+            let (sin, cos) = train.sin_cos(rest);
+            let horizontal = train.wave_vector.normalize_or_zero() * (-train.amplitude * sin);
+            sum += Vec3::new(horizontal.x, train.amplitude * cos, horizontal.y);
+        }
+        sum * fade
+    }
+
+    /// Upward unit normal of the surface at the particle that rests at `rest`, for a locally constant `fade`.
+    ///
+    /// With `s = Σ f kᵢ Aᵢ sin θᵢ` and `J = ∂x/∂x₀ = 1 − Σ f k̂k̂ᵀ k A cos θ` the slope is `−J⁻¹ s`.
+    pub fn normal(&self, rest: Vec2, fade: f32) -> Vec3 {
+        let mut slope = Vec2::ZERO;
+        // The symmetric Jacobian of the horizontal map: (xx, xz, zz).
+        let (mut xx, mut xz, mut zz) = (1.0, 0.0, 1.0);
+        for train in &self.trains {
+            let (sin, cos) = train.sin_cos(rest);
+            let k = train.wave_vector;
+            slope -= k * (train.amplitude * sin);
+            let stretch = fade * train.amplitude * cos / k.length().max(f32::MIN_POSITIVE);
+            xx -= k.x * k.x * stretch;
+            xz -= k.x * k.y * stretch;
+            zz -= k.y * k.y * stretch;
+        }
+        slope *= fade;
+        // (∂x × ∂z) of the parametric surface, turned upward: no division, so a cusp is harmless.
+        Vec3::new(slope.y * xz - slope.x * zz, xx * zz - xz * xz, slope.x * xz - slope.y * xx).normalize_or(Vec3::Y)
+    }
+
+    /// Velocity, m/s, of the particle that rests at `rest`.
+    pub fn velocity(&self, rest: Vec2, fade: f32) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        for train in &self.trains {
+            let (sin, cos) = train.sin_cos(rest);
+            let speed = train.amplitude * train.angular_frequency;
+            let horizontal = train.wave_vector.normalize_or_zero() * (speed * cos);
+            sum += Vec3::new(horizontal.x, speed * sin, horizontal.y);
+        }
+        sum * fade
+    }
+
+    /// The particle at rest that is now above `place` (xz, m): solves `x₀ + D(x₀) = place` by fixed-point iteration
+    /// to [`INVERSION_TOLERANCE`].
+    ///
+    /// The iteration contracts by the sum of the steepnesses, which is below 1 for a surface without loops; the last
+    /// iterate is returned where it does not converge.
+    pub fn rest_below(&self, place: Vec2, mut fade: impl FnMut(Vec2) -> f32) -> Vec2 {
+        let mut rest = place;
+        for _ in 0..MAX_INVERSION_STEPS {
+            let moved = self.displacement(rest, fade(rest));
+            let next = place - Vec2::new(moved.x, moved.z);
+            let error = next.distance_squared(rest);
+            rest = next;
+            if error < INVERSION_TOLERANCE * INVERSION_TOLERANCE {
+                break;
+            }
+        }
+        rest
+    }
+
+    /// Sum of `k A` of all trains: from 1 on the surface can fold over itself.
+    pub fn total_steepness(&self) -> f32 {
+        self.trains.iter().map(|train| train.wave_vector.length() * train.amplitude).sum()
+    }
+
+    /// Sum of the amplitudes, m: no crest is higher, no trough deeper.
+    pub fn total_amplitude(&self) -> f32 {
+        self.trains.iter().map(|train| train.amplitude).sum()
+    }
+}
+
+/// Horizontal accuracy of [`WaveField::rest_below`], m. With slopes below 1 the height is as good.
+pub const INVERSION_TOLERANCE: f32 = 1e-4;
+const MAX_INVERSION_STEPS: u32 = 48;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn sea() -> Vec<Wave> {
+        [(4.0, 0.25, 0.3), (2.3, 0.2, 1.2), (1.1, 0.15, 2.9), (0.6, 0.1, -0.8)]
+            .map(|(wavelength, steepness, angle)| Wave {
+                direction: Vec2::from_angle(angle),
+                wavelength,
+                steepness,
+                phase: angle * 3.0,
+            })
+            .to_vec()
+    }
+
+    #[test]
+    fn slowest_wave_is_where_theory_puts_it() {
+        // (4 g σ/ρ)^¼ = 0.2313 m/s at λ = 1.713 cm.
+        let speed = |wavelength: f32| angular_frequency(TAU / wavelength, f32::INFINITY) * wavelength / TAU;
+        assert_relative_eq!(speed(0.01713), 0.2313, epsilon = 1e-4);
+        assert!(speed(0.012) > speed(0.01713) && speed(0.025) > speed(0.01713));
+    }
+
+    #[test]
+    fn long_waves_travel_with_the_shallow_water_speed() {
+        let (depth, wavelength) = (0.5, 50.0);
+        let speed = angular_frequency(TAU / wavelength, depth) * wavelength / TAU;
+        assert_relative_eq!(speed, (GRAVITY * depth).sqrt(), max_relative = 0.002);
+    }
+
+    #[test]
+    fn crests_move_with_the_phase_speed() {
+        let wave = Wave { direction: Vec2::X, wavelength: 3.0, steepness: 0.2, phase: 0.0 };
+        let speed = angular_frequency(TAU / 3.0, 2.0) * 3.0 / TAU;
+        for time in [0.0, 0.7, 12.3, 86_400.0] {
+            let field = WaveField::at(&[wave], 2.0, time);
+            // A crest stands over the resting particle c·t, modulo the wavelength.
+            let crest = ((f64::from(speed) * time) % 3.0) as f32;
+            let moved = field.displacement(Vec2::new(crest, 5.0), 1.0);
+            assert_relative_eq!(moved.y, 0.2 * 3.0 / TAU, max_relative = 1e-3);
+        }
+    }
+
+    #[test]
+    fn inversion_finds_the_particle_above_a_place() {
+        let field = WaveField::at(&sea(), 3.0, 17.2);
+        for i in 0..1000 {
+            let place = Vec2::new((i % 40) as f32 * 0.31, (i / 40) as f32 * 0.27);
+            let rest = field.rest_below(place, |_| 1.0);
+            let moved = field.displacement(rest, 1.0);
+            assert!((rest + Vec2::new(moved.x, moved.z)).distance(place) < 1e-3);
+        }
+    }
+
+    #[test]
+    fn normal_is_the_gradient_of_the_height() {
+        let field = WaveField::at(&sea(), 3.0, 4.0);
+        let height = |place| field.displacement(field.rest_below(place, |_| 1.0), 1.0).y;
+        let h = 0.01;
+        for i in 0..50 {
+            let place = Vec2::new(i as f32 * 0.37, i as f32 * 0.11);
+            let slope = Vec2::new(
+                (height(place + Vec2::X * h) - height(place - Vec2::X * h)) / (2.0 * h),
+                (height(place + Vec2::Y * h) - height(place - Vec2::Y * h)) / (2.0 * h),
+            );
+            let normal = field.normal(field.rest_below(place, |_| 1.0), 1.0);
+            assert_relative_eq!(-normal.x / normal.y, slope.x, epsilon = 0.02);
+            assert_relative_eq!(-normal.z / normal.y, slope.y, epsilon = 0.02);
+        }
+    }
+
+    #[test]
+    fn velocity_is_the_rate_of_the_displacement() {
+        let (dt, rest) = (1e-3, Vec2::new(0.4, 2.0));
+        let before = WaveField::at(&sea(), 3.0, 9.0 - dt).displacement(rest, 1.0);
+        let after = WaveField::at(&sea(), 3.0, 9.0 + dt).displacement(rest, 1.0);
+        let velocity = WaveField::at(&sea(), 3.0, 9.0).velocity(rest, 1.0);
+        assert!(((after - before) / (2.0 * dt as f32)).distance(velocity) < 2e-3);
+    }
+
+    #[test]
+    fn waves_die_on_the_shore() {
+        assert_eq!(shallow_fade(-0.1, 0.5), 0.0);
+        assert_eq!(shallow_fade(0.25, 0.5), 0.5);
+        assert_eq!(shallow_fade(7.0, 0.5), 1.0);
+        assert_eq!(shallow_fade(0.0, 0.0), 1.0);
+    }
+}
