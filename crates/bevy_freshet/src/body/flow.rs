@@ -1,0 +1,39 @@
+//! The current of a water.
+use bevy::prelude::*;
+use freshet_hydro::grid::Grid;
+use std::sync::Arc;
+
+/// The current: a velocity in m/s at every place of the water, seen and felt alike. Without this component the water
+/// stands still.
+///
+/// Velocities are horizontal, in the water's local frame: x along local x (east for an unturned water), y along local z
+/// (south).
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(Component, Default, Clone, Debug)]
+pub struct WaterFlow {
+    /// Velocity of the whole water, m/s; a map adds to it. Default zero.
+    pub uniform: Vec2,
+    /// Factor on the map's velocities. Default 1.
+    pub scale: f32,
+    /// Velocities, m/s, on a grid centred on the water.
+    #[reflect(ignore)]
+    pub map: Option<Arc<Grid<Vec2>>>,
+}
+
+impl WaterFlow {
+    /// The same velocity (m/s) everywhere.
+    pub fn uniform(velocity: Vec2) -> Self {
+        Self { uniform: velocity, scale: 1.0, map: None }
+    }
+
+    /// Velocities (m/s) on a grid that is centred on the water.
+    pub fn from_map(map: impl Into<Arc<Grid<Vec2>>>) -> Self {
+        Self { uniform: Vec2::ZERO, scale: 1.0, map: Some(map.into()) }
+    }
+}
+
+impl Default for WaterFlow {
+    fn default() -> Self {
+        Self::uniform(Vec2::ZERO)
+    }
+}

@@ -1,0 +1,68 @@
+//! The components that describe a water: where it is, what it is made of, how it moves.
+mod bed;
+mod flow;
+mod optics;
+mod resolved;
+mod waves;
+
+pub use bed::{WaterBed, WaterBedError};
+pub use flow::WaterFlow;
+pub use optics::{Fresnel, WaterOptics};
+pub(crate) use resolved::{ResolvedBed, ResolvedWater, yaw_frame};
+pub use waves::{WaterWaves, Wave};
+
+use crate::{
+    reflection::WaterReflection,
+    report::{Reported, forget_despawned},
+    schedule::WaterSystems,
+    surface::WaterSurface,
+};
+use bevy::{app::RunFixedMainLoopSystems, prelude::*};
+
+/// A rectangle of water. Its entity's `Transform` places the still surface: translation and rotation about y count,
+/// scale and tilt do not (water is level).
+///
+/// Everything else about it is a component beside this one, with a useful default.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Component, Default, Clone, Debug)]
+#[require(Transform, Visibility, WaterOptics, WaterWaves, WaterSurface, WaterReflection, ResolvedWater)]
+pub struct Water {
+    /// Length along local x and z, m, > 0. Default 100 × 100.
+    ///
+    /// Water of no size is not drawn and lifts nothing.
+    pub size: Vec2,
+}
+
+impl Water {
+    /// Water of `size` (local x and z, m).
+    pub const fn new(size: Vec2) -> Self {
+        Self { size }
+    }
+}
+
+impl Default for Water {
+    fn default() -> Self {
+        Self::new(Vec2::splat(100.0))
+    }
+}
+
+/// Registers the components of a water and resolves them for every clock.
+pub(crate) struct BodyPlugin;
+
+impl Plugin for BodyPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Reported>()
+            .add_systems(First, forget_despawned)
+            .add_systems(FixedFirst, resolved::resolve_waters.in_set(WaterSystems::Resolve))
+            .add_systems(
+                RunFixedMainLoop,
+                resolved::resolve_waters
+                    .in_set(WaterSystems::Resolve)
+                    .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
+            )
+            .add_systems(
+                PostUpdate,
+                resolved::resolve_waters.in_set(WaterSystems::Resolve).after(TransformSystems::Propagate),
+            );
+    }
+}

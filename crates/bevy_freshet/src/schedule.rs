@@ -1,0 +1,20 @@
+//! When the water works.
+use bevy::prelude::*;
+
+/// The steps of the water within a frame.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum WaterSystems {
+    /// The waters' settings are checked and resolved for the clock of the running schedule.
+    ///
+    /// Runs in `FixedFirst` for the fixed clock, and again in `RunFixedMainLoop` after the fixed steps and in
+    /// `PostUpdate` after transform propagation for the virtual clock.
+    Resolve,
+    /// Floating bodies look up heights and velocities. In `FixedUpdate`.
+    Sample,
+    /// Forces of the water are handed to the physics engine. In `FixedUpdate`, after [`WaterSystems::Sample`] and before
+    /// Rapier's `PhysicsSet::SyncBackend`.
+    Force,
+    /// Surfaces, mirrors and their GPU data follow waters and cameras. In `PostUpdate`, after
+    /// [`WaterSystems::Resolve`] and before Bevy's `CameraUpdateSystems` and `VisibilitySystems::UpdateFrusta`.
+    Present,
+}
