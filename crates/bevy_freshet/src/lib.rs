@@ -1,1 +1,44 @@
-//! Real-time water for the Bevy engine.
+//! Real-time water for the Bevy engine: what you see is what floats you, and all of it is measured against physics.
+//!
+//! Add [`WaterPlugin`], spawn a [`Water`](body::Water) and, with bevy_rapier3d, bodies that are
+//! [`Floating`](buoyancy::Floating). Everything else is a component beside these, with a useful default.
+//!
+//! SI units throughout; y is up and the still surface is level.
+
+pub mod body;
+pub mod query;
+pub mod reflection;
+mod report;
+mod schedule;
+pub mod surface;
+
+pub use schedule::WaterSystems;
+
+/// What an app with water usually needs.
+pub mod prelude {
+    pub use crate::{
+        WaterPlugin, WaterSystems,
+        body::{Fresnel, Water, WaterBed, WaterFlow, WaterOptics, WaterWaves},
+        query::{WaterQuery, WaterSample},
+        reflection::WaterReflection,
+        surface::{NoWater, SurfaceView, WaterSurface},
+    };
+}
+
+use bevy::{prelude::*, render::RenderApp};
+
+/// Water: drawn, reflecting, and answering [`WaterQuery`](query::WaterQuery); with the feature `rapier` it carries
+/// bodies.
+///
+/// Works in an app without a renderer or a GPU, where it is not drawn but floats bodies all the same.
+#[derive(Default)]
+pub struct WaterPlugin;
+
+impl Plugin for WaterPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(body::BodyPlugin);
+        if app.get_sub_app(RenderApp).is_some() {
+            app.add_plugins((surface::SurfacePlugin, reflection::ReflectionPlugin));
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! A water with its settings checked and its waves at one instant: what surface, query and bodies read.
+use super::{Water, WaterBed, WaterFlow, WaterWaves};
+use crate::report::Reported;
+use bevy::{math::Affine2, prelude::*};
+use freshet_hydro::{
+    grid::Grid,
+    waves::{self, WaveField},
+};
+use std::sync::Arc;
+
+/// A water at one instant of the running schedule's clock.
+#[derive(Component, Clone, Debug, Default)]
+pub(crate) struct ResolvedWater {
+    /// World xz from the water's local xz.
+    pub world_from_local: Affine2,
+    /// The water's local xz from world xz.
+    pub local_from_world: Affine2,
+    /// World height of the still surface, m.
+    pub level: f32,
+    /// Half of the size along local x and z, m; zero for a water that is unusable.
+    pub half_size: Vec2,
+    /// The waves, in local xz.
+    pub waves: WaveField,
+    /// See [`WaterWaves::fade_depth`].
+    pub fade_depth: f32,
+    /// The ground below, if any.
+    pub bed: Option<ResolvedBed>,
+    /// Uniform part of the current in local xz, m/s.
+    pub drift: Vec2,
+    /// Map of the current in local xz with its factor.
+    pub flow: Option<(Arc<Grid<Vec2>>, f32)>,
+}
+
+/// A bed as a water sees it.
+#[derive(Clone, Debug)]
+pub(crate) struct ResolvedBed {
+    /// The entity with the [`WaterBed`].
+    pub entity: Entity,
+    /// Elevations relative to [`ResolvedBed::base`], m.
+    pub elevations: Arc<Grid<f32>>,
+    /// The bed's local xz from the water's local xz.
+    pub bed_from_local: Affine2,
+    /// World height of the bed entity, m.
+    pub base: f32,
+}
+
+impl ResolvedWater {
+    /// Whether local `place` lies in the water's rectangle.
+    pub fn covers(&self, place: Vec2) -> bool {
+        place.abs().cmple(self.half_size).all() && self.half_size.min_element() > 0.0
+    }
+
+    /// Depth of the still water at local `place`, m: negative on dry land, infinite without a bed; NaN where the bed has
+    /// no data.
+    pub fn still_depth(&self, place: Vec2) -> f32 {
+        let Some(bed) = &self.bed else { return f32::INFINITY };
+        let place = bed.bed_from_local.transform_point2(place);
+        self.level - (bed.base + bed.elevations.sample(place))
+    }
+
+    /// Share of the waves' height at local `place`.
+    pub fn fade(&self, place: Vec2) -> f32 {
+        let depth = self.still_depth(place);
+        // Without data there is no shore to fade at, in the shader as well.
+        if depth.is_nan() { 1.0 } else { waves::shallow_fade(depth, self.fade_depth) }
+    }
+
+    /// Current at local `place`, local xz, m/s.
+    pub fn current(&self, place: Vec2) -> Vec2 {
+        self.drift + self.flow.as_ref().map_or(Vec2::ZERO, |(map, scale)| map.sample(place) * *scale)
+    }
+}
+
+/// Translation in xz and rotation about y of `pose`; scale and tilt are dropped.
+pub(crate) fn yaw_frame(pose: &GlobalTransform) -> Affine2 {
+    let (yaw, _, _) = pose.rotation().to_euler(EulerRot::YXZ);
+    // A turn by +yaw about y takes x towards −z, which in (x, z) is a turn by −yaw.
+    Affine2::from_angle_translation(-yaw, pose.translation().xz())
+}
+
+/// Checks every water's settings and evaluates them for the clock of the running schedule.
+pub(crate) fn resolve_waters(
+    time: Res<Time>,
+    mut reported: ResMut<Reported>,
+    beds: Query<(Entity, &WaterBed, &GlobalTransform)>,
+    mut waters: Query<(Entity, &Water, &WaterWaves, Option<&WaterFlow>, &GlobalTransform, &mut ResolvedWater)>,
+) {
+    for (entity, water, waves, flow, pose, mut resolved) in &mut waters {
+        let world_from_local = yaw_frame(pose);
+        let mut next = ResolvedWater {
+            world_from_local,
+            local_from_world: world_from_local.inverse(),
+            level: pose.translation().y,
+            half_size: usable_half_size(entity, water, pose, &mut reported),
+            waves: usable_waves(entity, waves, time.elapsed_secs_f64(), &mut reported),
+            fade_depth: reported.clamp(entity, "WaterWaves::fade_depth", waves.fade_depth, 0.0..=1e4, 0.8),
+            ..default()
+        };
+        if let Some(flow) = flow {
+            next.drift = usable_drift(entity, flow, &mut reported);
+            let scale = reported.clamp(entity, "WaterFlow::scale", flow.scale, -1e3..=1e3, 1.0);
+            next.flow = flow.map.clone().map(|map| (map, scale));
+        }
+        next.bed = bed_below(&next, &beds);
+        report_uncovered(entity, &next, &mut reported);
+        *resolved = next;
+    }
+}
+
+fn usable_half_size(entity: Entity, water: &Water, pose: &GlobalTransform, reported: &mut Reported) -> Vec2 {
+    if !pose.is_finite() {
+        reported.warn(entity, "Transform", "is not finite; the water is switched off");
+        return Vec2::ZERO;
+    }
+    if pose.up().y < 0.999 {
+        reported.warn(entity, "Transform::rotation", "tilts the water; only the turn about y is used");
+    }
+    if water.size.is_finite() && water.size.min_element() > 0.0 {
+        return water.size * 0.5;
+    }
+    reported.warn(entity, "Water::size", format_args!("is {}, not above zero; the water is switched off", water.size));
+    Vec2::ZERO
+}
+
+fn usable_drift(entity: Entity, flow: &WaterFlow, reported: &mut Reported) -> Vec2 {
+    if flow.uniform.is_finite() {
+        return flow.uniform;
+    }
+    reported.warn(entity, "WaterFlow::uniform", format_args!("is {}; no current is used", flow.uniform));
+    Vec2::ZERO
+}
+
+fn usable_waves(entity: Entity, settings: &WaterWaves, time: f64, reported: &mut Reported) -> WaveField {
+    let depth = if settings.depth > 0.0 {
+        settings.depth
+    } else {
+        reported.warn(entity, "WaterWaves::depth", format_args!("is {}; deep water is used", settings.depth));
+        f32::INFINITY
+    };
+    if settings.trains.len() > WaterWaves::MAX {
+        let (given, most) = (settings.trains.len(), WaterWaves::MAX);
+        reported.warn(entity, "WaterWaves::trains", format_args!("has {given} trains; the first {most} are used"));
+    }
+    let mut usable: Vec<waves::Wave> = Vec::with_capacity(settings.trains.len().min(WaterWaves::MAX));
+    for train in settings.trains.iter().take(WaterWaves::MAX) {
+        let numbers = [train.direction.x, train.direction.y, train.wavelength, train.steepness, train.phase];
+        if !numbers.iter().all(|n| n.is_finite()) || train.wavelength < 1e-3 || train.steepness < 0.0 {
+            reported.warn(entity, "WaterWaves::trains", format_args!("holds {train:?}; that train is left out"));
+            continue;
+        }
+        let &super::Wave { direction, wavelength, steepness, phase } = train;
+        usable.push(waves::Wave { direction, wavelength, steepness, phase });
+    }
+    let steepness: f32 = usable.iter().map(|wave| wave.steepness).sum();
+    if steepness > 0.95 {
+        reported.warn(
+            entity,
+            "WaterWaves::trains",
+            format_args!("have steepnesses that sum to {steepness}, more than 0.95; they are scaled down"),
+        );
+        usable.iter_mut().for_each(|wave| wave.steepness *= 0.95 / steepness);
+    }
+    WaveField::at(&usable, depth, time)
+}
+
+/// The bed whose grid holds the water's centre; the highest one if several do.
+fn bed_below(water: &ResolvedWater, beds: &Query<(Entity, &WaterBed, &GlobalTransform)>) -> Option<ResolvedBed> {
+    beds.iter()
+        .filter_map(|(entity, bed, pose)| {
+            let bed_from_local = yaw_frame(pose).inverse() * water.world_from_local;
+            bed.elevations().cell_at(bed_from_local.transform_point2(Vec2::ZERO))?;
+            let (elevations, base) = (bed.elevations().clone(), pose.translation().y);
+            Some(ResolvedBed { entity, elevations, bed_from_local, base })
+        })
+        .max_by(|a, b| a.base.total_cmp(&b.base).then(a.entity.cmp(&b.entity)))
+}
+
+/// Warns if a corner of the water lies outside its bed: there the nearest edge of the bed counts.
+fn report_uncovered(entity: Entity, water: &ResolvedWater, reported: &mut Reported) {
+    let Some(bed) = &water.bed else { return };
+    // One centimetre of grace for a water that is exactly as large as its bed.
+    let reach = (water.half_size - 0.01).max(Vec2::ZERO);
+    let corners = [vec2(1.0, 1.0), vec2(1.0, -1.0), vec2(-1.0, 1.0), vec2(-1.0, -1.0)];
+    let outside = corners
+        .iter()
+        .any(|&corner| bed.elevations.cell_at(bed.bed_from_local.transform_point2(corner * reach)).is_none());
+    if outside && water.half_size != Vec2::ZERO {
+        reported.warn(
+            entity,
+            "Water::size",
+            format_args!("reaches beyond its bed {}; the bed's edge is continued there", bed.entity),
+        );
+    }
+}

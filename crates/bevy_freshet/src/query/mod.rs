@@ -1,0 +1,76 @@
+//! Heights, normals, velocities and depths of the water for physics and gameplay.
+use crate::body::ResolvedWater;
+use bevy::{ecs::system::SystemParam, prelude::*};
+
+/// The water at one point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WaterSample {
+    /// The entity with the [`Water`](crate::body::Water).
+    pub water: Entity,
+    /// World height of the surface, m.
+    pub height: f32,
+    /// Upward unit normal of the surface.
+    pub normal: Vec3,
+    /// Velocity of the water at the surface, m/s: current and waves.
+    pub velocity: Vec3,
+    /// Depth of the water column, m, > 0; infinite without a bed.
+    pub depth: f32,
+}
+
+/// Answers where the water is: the same surface that is drawn, at the clock of the schedule that asks (the fixed clock
+/// in `FixedUpdate`, the virtual clock in `Update`).
+///
+/// Costs one Gerstner sum per iteration of the search for the particle above a place, about 1 µs for eight trains.
+#[derive(SystemParam)]
+pub struct WaterQuery<'w, 's> {
+    waters: Query<'w, 's, (Entity, &'static ResolvedWater)>,
+}
+
+impl WaterQuery<'_, '_> {
+    /// The water at `position` (world, m): `None` outside all waters and on dry land.
+    ///
+    /// Where several waters lie above one another it is the lowest one whose surface is above the position, else the
+    /// highest one below it: a swimmer in the lake under a hanging pond is in the lake.
+    pub fn sample(&self, position: Vec3) -> Option<WaterSample> {
+        self.waters
+            .iter()
+            .filter_map(|(entity, water)| sample(entity, water, position.xz()))
+            .min_by(|a, b| {
+                let rank = |sample: &WaterSample| {
+                    let above = sample.height - position.y;
+                    (above < 0.0, above.abs())
+                };
+                let ((a_below, a_distance), (b_below, b_distance)) = (rank(a), rank(b));
+                a_below.cmp(&b_below).then(a_distance.total_cmp(&b_distance)).then(a.water.cmp(&b.water))
+            })
+    }
+}
+
+/// `water` at world xz, if it is there.
+fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSample> {
+    let local = water.local_from_world.transform_point2(place);
+    if !water.covers(local) {
+        return None;
+    }
+    let rest = water.waves.rest_below(local, |rest| water.fade(rest));
+    let fade = water.fade(rest);
+    let height = water.level + water.waves.displacement(rest, fade).y;
+    let depth = water.still_depth(local) + (height - water.level);
+    // Not `depth <= 0`: without data (NaN) there is no water either.
+    if !(depth > 0.0) {
+        return None;
+    }
+    let to_world = |v: Vec3| {
+        let turned = water.world_from_local.transform_vector2(v.xz());
+        vec3(turned.x, v.y, turned.y)
+    };
+    let current = water.current(local);
+    let velocity = vec3(current.x, 0.0, current.y) + water.waves.velocity(rest, fade);
+    Some(WaterSample {
+        water: entity,
+        height,
+        normal: to_world(water.waves.normal(rest, fade)),
+        velocity: to_world(velocity),
+        depth,
+    })
+}

@@ -1,0 +1,15 @@
+// The bindings of the surface material; an index means one thing everywhere.
+#define_import_path freshet::surface::bindings
+
+#import freshet::surface::types::Surface
+
+@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> surface: Surface;
+@group(#{MATERIAL_BIND_GROUP}) @binding(1) var mirror: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(2) var mirror_sampler: sampler;
+@group(#{MATERIAL_BIND_GROUP}) @binding(3) var sky: texture_cube<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(4) var sky_sampler: sampler;
+@group(#{MATERIAL_BIND_GROUP}) @binding(5) var sky_light: texture_cube<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(6) var detail: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(7) var detail_sampler: sampler;
+@group(#{MATERIAL_BIND_GROUP}) @binding(8) var bed: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(9) var flow: texture_2d<f32>;

@@ -1,0 +1,100 @@
+//! The tile of fine ripples.
+use bevy::{
+    asset::RenderAssetUsages,
+    image::{ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
+    prelude::*,
+    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
+};
+use core::f32::consts::TAU;
+use half::f16;
+
+/// Texels along one side of the tile.
+const SIZE: usize = 256;
+/// Shortest ripple, in texels: four samples a wave.
+const SHORTEST: f32 = 4.0;
+/// Number of wave trains.
+const TRAINS: usize = 160;
+
+/// Slopes of a random sea that tiles: red and green ∂h/∂x and ∂h/∂z with a mean square slope of 1 together, blue the mean
+/// square slope. Each mip level holds the means of the one above it, so that mean square minus square of the mean is
+/// the slope variance that a level hides.
+pub(super) fn detail_tile() -> Image {
+    let mut level = slopes();
+    let mut data = Vec::new();
+    let mut size = SIZE;
+    loop {
+        data.extend(level.iter().flat_map(|texel| texel.map(|c| f16::from_f32(c).to_le_bytes())).flatten());
+        if size == 1 {
+            break;
+        }
+        level = halved(&level, size);
+        size /= 2;
+    }
+    let extent = Extent3d { width: SIZE as u32, height: SIZE as u32, depth_or_array_layers: 1 };
+    let mut image = Image::new_uninit(extent, TextureDimension::D2, TextureFormat::Rgba16Float, RenderAssetUsages::RENDER_WORLD);
+    image.texture_descriptor.label = Some("water_detail");
+    image.texture_descriptor.mip_level_count = SIZE.ilog2() + 1;
+    image.data = Some(data);
+    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
+        address_mode_u: ImageAddressMode::Repeat,
+        address_mode_v: ImageAddressMode::Repeat,
+        mag_filter: ImageFilterMode::Linear,
+        min_filter: ImageFilterMode::Linear,
+        mipmap_filter: ImageFilterMode::Linear,
+        ..default()
+    });
+    image
+}
+
+/// A sum of sines whose wave vectors fit the tile, with directions all around and equal slope per octave.
+fn slopes() -> Vec<[f32; 4]> {
+    let mut random = fastrand::Rng::with_seed(0x0F2E_54E7);
+    let mut sum = vec![Vec2::ZERO; SIZE * SIZE];
+    let most = SIZE as f32 / SHORTEST;
+    for _ in 0..TRAINS {
+        // Equal numbers per octave between 4 waves a tile and the shortest ripple.
+        let waves = 4.0 * (most / 4.0).powf(random.f32());
+        let vector = (Vec2::from_angle(random.f32() * TAU) * waves).round();
+        if vector == Vec2::ZERO {
+            continue;
+        }
+        let phase = random.f32() * TAU;
+        let direction = vector.normalize();
+        for (i, slope) in sum.iter_mut().enumerate() {
+            let place = vec2((i % SIZE) as f32, (i / SIZE) as f32) / SIZE as f32;
+            *slope += direction * (vector.dot(place) * TAU + phase).sin();
+        }
+    }
+    let mean_square = sum.iter().map(|s| s.length_squared()).sum::<f32>() / sum.len() as f32;
+    let factor = mean_square.sqrt().recip();
+    sum.iter().map(|s| *s * factor).map(|s| [s.x, s.y, s.length_squared(), 1.0]).collect()
+}
+
+fn halved(level: &[[f32; 4]], size: usize) -> Vec<[f32; 4]> {
+    let half = size / 2;
+    let texel = |x: usize, z: usize| Vec4::from_array(level[z * size + x]);
+    (0..half * half)
+        .map(|i| (2 * (i % half), 2 * (i / half)))
+        .map(|(x, z)| (texel(x, z) + texel(x + 1, z) + texel(x, z + 1) + texel(x + 1, z + 1)) * 0.25)
+        .map(|mean| mean.to_array())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slope_energy_survives_every_mip_level() {
+        let mut level = slopes();
+        let mut size = SIZE;
+        while size > 1 {
+            let mean_square = level.iter().map(|t| t[2]).sum::<f32>() / level.len() as f32;
+            assert!((mean_square - 1.0).abs() < 1e-3, "{mean_square} at {size}");
+            level = halved(&level, size);
+            size /= 2;
+        }
+        // Seen from afar the water is level, and all its slope has become variance.
+        assert!(level[0][0].abs() < 0.02 && level[0][1].abs() < 0.02);
+    }
+}

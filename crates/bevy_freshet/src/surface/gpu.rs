@@ -1,0 +1,63 @@
+//! The numbers of a surface as the shader reads them.
+use crate::body::WaterWaves;
+use bevy::{prelude::*, render::render_resource::ShaderType};
+
+/// The Rust twin of `Surface` in `types.wgsl`, where each member is explained.
+#[derive(ShaderType, Clone, Debug, Default, PartialEq)]
+pub(crate) struct GpuSurface {
+    pub world_from_local: Mat2,
+    pub world_origin: Vec2,
+    pub half_size: Vec2,
+    pub level: f32,
+    pub mesh_cell: f32,
+    pub mesh_center: Vec2,
+    pub mesh_reach: f32,
+    pub flags: u32,
+    pub view: u32,
+    pub wave_count: u32,
+    pub waves: [Vec4; WaterWaves::MAX],
+
+    pub bed_from_local: Mat2,
+    pub bed_origin: Vec2,
+    pub bed_size: Vec2,
+    pub bed_cell: f32,
+    pub bed_base: f32,
+    pub fade_depth: f32,
+
+    pub flow_cell: f32,
+    pub flow_size: Vec2,
+    pub flow_cycle: f32,
+    pub flow_phase: f32,
+
+    pub detail_slope: f32,
+    pub detail_scale: f32,
+    pub detail_drift: Vec4,
+    pub roughness: f32,
+
+    pub index: f32,
+    pub absorption: Vec3,
+    pub reflectivity: f32,
+    pub backscatter: Vec3,
+    pub refraction: f32,
+    pub dull_color: Vec3,
+    pub dullness: f32,
+    pub dispersion: f32,
+    pub light_path: f32,
+    pub edge_depth: f32,
+    pub fresnel: u32,
+    pub fresnel_correction: f32,
+
+    pub mirror_distance: f32,
+    pub mirror_distortion: f32,
+    pub mirror_clip_from_world: Mat4,
+    pub sky_from_world: Mat3,
+    pub sky_tint: Vec3,
+}
+
+impl GpuSurface {
+    pub const MIRROR: u32 = 1;
+    pub const BED: u32 = 2;
+    pub const FLOW: u32 = 4;
+    pub const FOG: u32 = 8;
+    pub const SUNLIGHT: u32 = 16;
+}

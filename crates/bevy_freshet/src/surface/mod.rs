@@ -1,0 +1,130 @@
+//! The drawn surface: a mesh that follows the camera, and the material that reflects, refracts and absorbs.
+//!
+//! For every water and every camera that sees it there is one surface entity. It is drawn in Bevy's transmissive phase:
+//! after the opaque scene, of which it reads colour and depth, and before anything transparent. Cameras therefore get
+//! a `DepthPrepass`.
+mod detail;
+mod gpu;
+mod material;
+mod mesh;
+mod sync;
+mod viewer;
+mod write;
+
+pub(crate) use viewer::{ViewerData, Viewers};
+pub use viewer::NoWater;
+
+use crate::schedule::WaterSystems;
+use bevy::{
+    asset::{embedded_asset, load_internal_asset},
+    camera::{CameraUpdateSystems, visibility::VisibilitySystems},
+    prelude::*,
+    render::RenderApp,
+    shader::load_shader_library,
+};
+
+/// How finely the surface is drawn.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Component, Default, Clone, Debug)]
+pub struct WaterSurface {
+    /// Spacing of the mesh near the camera, m, 0.005…100. Default 0.15. Waves shorter than four cells are drawn flatter
+    /// than they are, shorter than two not at all (their normals remain).
+    pub cell: f32,
+    /// Cells across the finest part of the mesh, 8…256, rounded to a multiple of 4. Default 64. Each ring around it is
+    /// twice as wide with cells twice as large.
+    pub cells: u32,
+    /// Root mean square slope of the fine ripples, 0…1. Default 0.06. 0 switches them off.
+    pub ripples: f32,
+    /// Size of the ripples' pattern, m, > 0. Default 4: ripples of 6 cm to 1 m.
+    pub ripple_size: f32,
+    /// Slope variance of what is too small for any texture, 0.0001…0.5: how much the sun's glitter spreads. Default
+    /// 0.002.
+    pub roughness: f32,
+    /// Whether sun and moon glitter on the surface. Default true.
+    pub sunlight: bool,
+    /// What is drawn. Default [`SurfaceView::Water`].
+    pub view: SurfaceView,
+}
+
+impl Default for WaterSurface {
+    fn default() -> Self {
+        Self {
+            cell: 0.15,
+            cells: 64,
+            ripples: 0.06,
+            ripple_size: 4.0,
+            roughness: 0.002,
+            sunlight: true,
+            view: SurfaceView::Water,
+        }
+    }
+}
+
+/// What the surface shows: the water, or one of its parts for inspection and measurement.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Default, Clone, Debug, PartialEq)]
+pub enum SurfaceView {
+    /// The water.
+    #[default]
+    Water,
+    /// The reflected light alone.
+    Reflection,
+    /// The light from below alone.
+    Refraction,
+    /// Reflected share in red, refracted share in green.
+    Fresnel,
+    /// World normal, from −1…1 to 0…1.
+    Normal,
+    /// Height over the still surface: red the height in m rounded to 1/64 m, green 64 times the rest.
+    Height,
+    /// Opacity of the water's edge.
+    Edge,
+}
+
+/// Draws the water. Does nothing in an app without a GPU device.
+pub(crate) struct SurfacePlugin;
+
+impl Plugin for SurfacePlugin {
+    fn build(&self, app: &mut App) {
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+        load_shader_library!(app, "types.wgsl");
+        load_shader_library!(app, "bindings.wgsl");
+        load_shader_library!(app, "ground.wgsl");
+        load_shader_library!(app, "waves.wgsl");
+        load_shader_library!(app, "detail.wgsl");
+        load_shader_library!(app, "optics.wgsl");
+        load_shader_library!(app, "scene.wgsl");
+        load_shader_library!(app, "mirror.wgsl");
+        load_shader_library!(app, "light.wgsl");
+        load_shader_library!(app, "refraction.wgsl");
+        embedded_asset!(app, "surface.wgsl");
+
+        app.add_plugins(MaterialPlugin::<material::SurfaceMaterial>::default())
+            .init_resource::<sync::GroundTextures>()
+            .init_resource::<sync::SurfaceAssets>()
+            .configure_sets(
+                PostUpdate,
+                WaterSystems::Present
+                    .after(WaterSystems::Resolve)
+                    .after(TransformSystems::Propagate)
+                    .before(CameraUpdateSystems)
+                    .before(VisibilitySystems::UpdateFrusta)
+                    .before(VisibilitySystems::CalculateBounds),
+            )
+            .add_systems(
+                PostUpdate,
+                (
+                    (viewer::require_depth, sync::sync_surfaces).chain().in_set(WaterSystems::Present),
+                    write::write_surfaces
+                        .in_set(WaterSystems::Present)
+                        .after(sync::sync_surfaces)
+                        .after(crate::reflection::update_mirrors),
+                    viewer::show_each_viewer_its_own
+                        .after(VisibilitySystems::CheckVisibility)
+                        .before(VisibilitySystems::MarkNewlyHiddenEntitiesInvisible),
+                ),
+            );
+    }
+}

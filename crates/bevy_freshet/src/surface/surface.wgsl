@@ -1,0 +1,135 @@
+// The water surface: displaced, and coloured by what it reflects, lets through and scatters.
+#import bevy_pbr::mesh_view_bindings::view
+#import freshet::surface::bindings::surface
+#import freshet::surface::detail
+#import freshet::surface::light
+#import freshet::surface::mirror
+#import freshet::surface::optics
+#import freshet::surface::refraction
+#import freshet::surface::scene
+#import freshet::surface::types
+#import freshet::surface::waves
+
+#ifdef TONEMAP_IN_SHADER
+#import bevy_core_pipeline::tonemapping::tone_mapping
+#endif
+
+struct Vertex {
+    @location(0) position: vec3<f32>,
+}
+
+struct Fragment {
+    @builtin(position) position: vec4<f32>,
+    @location(0) world: vec3<f32>,
+    @location(1) rest: vec2<f32>, // local xz of the particle at rest
+}
+
+@vertex
+fn vertex(in: Vertex) -> Fragment {
+    let rest = clamp(surface.mesh_center + in.position.xz, -surface.half_size, surface.half_size);
+    // The spacing of the mesh grows with the distance from its centre; this bound of it is continuous across rings.
+    let distance = max(abs(in.position.x), abs(in.position.z));
+    let spacing = surface.mesh_cell * max(1.0, distance / surface.mesh_reach * 2.0 - 1.0);
+    let moved = waves::displacement(rest, waves::shallow_fade(rest), spacing);
+    let xz = surface.world_from_local * (rest + moved.xz) + surface.world_origin;
+    let world = vec3(xz.x, surface.level + moved.y, xz.y);
+    return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest);
+}
+
+struct Facet {
+    normal: vec3<f32>,
+    variance: f32,
+}
+
+// Normal of the surface as far as a pixel resolves it, and the slope variance it does not.
+fn facet(rest: vec2<f32>) -> Facet {
+    let footprint = detail::Footprint(dpdx(rest), dpdy(rest));
+    let spacing = max(length(footprint.x), length(footprint.y));
+    let swell = waves::slope(rest, waves::shallow_fade(rest), spacing);
+    let ripples = detail::slope(rest, footprint);
+    let slope = surface.world_from_local * (swell.slope + ripples.slope);
+    return Facet(normalize(vec3(-slope.x, 1.0, -slope.y)), swell.variance + ripples.variance + surface.roughness);
+}
+
+@fragment
+fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(0) vec4<f32> {
+    let pixel = in.position.xy;
+    let facet = facet(in.rest);
+    let to_eye = scene::direction_to_eye(in.world);
+    let behind = scene::behind(pixel);
+    if !from_above {
+        return finish(seen_from_below(in, facet.normal, to_eye));
+    }
+
+    let fog = scene::fog_to(in.world, pixel);
+    // A facet that leans away from the eye is hidden by the one before it: count it as seen edge-on.
+    let cos_eye = max(dot(facet.normal, to_eye), 0.02);
+    let share = optics::reflectance(cos_eye) * surface.reflectivity;
+
+    let lit = light::lights(in.world, facet.normal, to_eye, facet.variance, pixel);
+    let foot = vec3(in.world.x, surface.level, in.world.z);
+    let reflection = mirror::reflected(foot, bounce(facet.normal, to_eye), sqrt(facet.variance), fog);
+    let below = refraction::refracted(in.world, in.position, facet.normal, to_eye, behind, lit);
+
+    var color = mix(below, reflection, share);
+    if (surface.flags & types::FLAG_SUNLIGHT) != 0u {
+        color += lit.glitter * surface.reflectivity;
+    }
+    color = mix(color, surface.dull_color * lit.below, surface.dullness);
+    if (surface.flags & types::FLAG_FOG) != 0u {
+        color = scene::with_fog(color, fog);
+    }
+    let cover = edge(in.world.y - behind.position.y, behind.depth);
+    color = mix(scene::color_behind(pixel), color, cover);
+
+    switch surface.view {
+        case types::VIEW_REFLECTION: { color = reflection; }
+        case types::VIEW_REFRACTION: { color = below; }
+        case types::VIEW_FRESNEL: { color = vec3(share, 1.0 - share, 0.0); }
+        case types::VIEW_NORMAL: { color = facet.normal * 0.5 + 0.5; }
+        case types::VIEW_HEIGHT: { color = split(in.world.y - surface.level); }
+        case types::VIEW_EDGE: { color = vec3(cover); }
+        default: {}
+    }
+    return finish(color);
+}
+
+// Direction of the mirrored ray; the water does not mirror itself, so rays that would dip below it graze it.
+fn bounce(normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let level = vec3(0.0, 1.0, 0.0);
+    let bent = normalize(mix(level, normal, surface.mirror_distortion));
+    var direction = reflect(-to_eye, bent);
+    direction.y = max(abs(direction.y), 0.005);
+    return normalize(direction);
+}
+
+// Opacity of the edge for a column of `depth` metres: 0 at the waterline, 1 from the edge depth on, with soft ends.
+fn edge(depth: f32, behind_depth: f32) -> f32 {
+    if surface.edge_depth <= 0.0 || behind_depth <= 0.0 {
+        return 1.0;
+    }
+    return smoothstep(0.0, surface.edge_depth, depth);
+}
+
+// From below: the scene above through the surface, or the water itself under total internal reflection.
+fn seen_from_below(in: Fragment, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let cos_eye = max(dot(-normal, to_eye), 0.02);
+    let share = optics::fresnel_exact(cos_eye, 1.0 / surface.index) * surface.reflectivity;
+    let lit = light::lights(in.world, normal, to_eye, 1.0, in.position.xy);
+    return mix(scene::color_behind(in.position.xy), optics::scattered(lit.below, 1e3, 1e3, 1.0), share);
+}
+
+// A height in metres as a coarse and a fine part that 16-bit floats hold to a hundredth of a millimetre.
+fn split(height: f32) -> vec3<f32> {
+    let coarse = round(height * 64.0) / 64.0;
+    return vec3(coarse, (height - coarse) * 64.0, 0.0);
+}
+
+fn finish(color: vec3<f32>) -> vec4<f32> {
+    let opaque = vec4(color, 1.0);
+#ifdef TONEMAP_IN_SHADER
+    return tone_mapping(opaque, view.color_grading);
+#else
+    return opaque;
+#endif
+}

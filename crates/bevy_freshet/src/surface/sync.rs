@@ -1,0 +1,209 @@
+//! Surface entities and the textures they share.
+use super::{
+    WaterSurface,
+    detail::detail_tile,
+    gpu::GpuSurface,
+    material::SurfaceMaterial,
+    mesh::{nested_grid, rings_for},
+    viewer::Viewers,
+};
+use crate::{body::ResolvedWater, report::Reported};
+use bevy::{
+    asset::RenderAssetUsages,
+    camera::{primitives::Aabb, visibility::RenderLayers},
+    light::{NotShadowCaster, NotShadowReceiver},
+    math::bounding::Aabb3d,
+    platform::collections::{HashMap, HashSet},
+    prelude::*,
+    render::{
+        render_resource::{Extent3d, TextureDimension, TextureFormat},
+        storage::ShaderBuffer,
+    },
+};
+use freshet_hydro::grid::Grid;
+use std::sync::Arc;
+
+/// The surface of one water for one viewing camera.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct SurfaceOf {
+    pub water: Entity,
+    pub viewer: Entity,
+}
+
+/// Shape of a surface mesh.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SurfaceShape {
+    /// Spacing of the finest part, m.
+    pub cell: f32,
+    /// Cells across the finest part.
+    pub cells: u32,
+    rings: u32,
+}
+
+impl SurfaceShape {
+    fn new(entity: Entity, settings: &WaterSurface, water: &ResolvedWater, reported: &mut Reported) -> Self {
+        let cell = reported.clamp(entity, "WaterSurface::cell", settings.cell, 0.005..=100.0, 0.15);
+        let cells = reported.clamp(entity, "WaterSurface::cells", settings.cells as f32, 8.0..=256.0, 64.0);
+        let cells = (cells as u32).next_multiple_of(4);
+        // From any place in the rectangle to its farthest corner, and a little more for the snapping of the centre.
+        let reach = 2.0 * water.half_size.length() + SNAP_CELLS * cell;
+        Self { cell, cells, rings: rings_for(cell, cells, reach) }
+    }
+
+    fn key(&self) -> (u32, u32, u32) {
+        (self.cell.to_bits(), self.cells, self.rings)
+    }
+
+    /// Where the mesh is centred for an eye at local `eye`: steps of whole cells, so that vertices of the inner rings
+    /// stay at the same places of the water while the camera moves.
+    pub fn center(&self, eye: Vec2, half_size: Vec2) -> Vec2 {
+        let step = self.cell * SNAP_CELLS;
+        (eye.clamp(-half_size, half_size) / step).round() * step
+    }
+}
+
+/// Step of the mesh centre, in finest cells.
+const SNAP_CELLS: f32 = 8.0;
+
+/// Assets that all surfaces share.
+#[derive(Resource)]
+pub(crate) struct SurfaceAssets {
+    detail: Handle<Image>,
+    meshes: HashMap<(u32, u32, u32), Handle<Mesh>>,
+}
+
+impl FromWorld for SurfaceAssets {
+    fn from_world(world: &mut World) -> Self {
+        let detail = world.resource_mut::<Assets<Image>>().add(detail_tile());
+        Self { detail, meshes: HashMap::default() }
+    }
+}
+
+/// Beds and flow maps as textures, one for each grid however many waters use it.
+#[derive(Resource, Default)]
+pub(crate) struct GroundTextures {
+    beds: Vec<(Arc<Grid<f32>>, Handle<Image>)>,
+    flows: Vec<(Arc<Grid<Vec2>>, Handle<Image>)>,
+}
+
+impl GroundTextures {
+    pub fn bed(&mut self, grid: &Arc<Grid<f32>>, images: &mut Assets<Image>) -> Handle<Image> {
+        // Without data the shader must see deep water, as the fading of waves does.
+        let texel = |z: &f32| (if z.is_finite() { *z } else { -1e6 }).to_le_bytes();
+        let image = || {
+            let data = grid.values().iter().flat_map(texel).collect();
+            grid_image("water_bed", grid.size(), TextureFormat::R32Float, data)
+        };
+        shared(&mut self.beds, grid, || images.add(image()))
+    }
+
+    pub fn flow(&mut self, grid: &Arc<Grid<Vec2>>, images: &mut Assets<Image>) -> Handle<Image> {
+        let texel = |v: &Vec2| v.to_array().map(f32::to_le_bytes).concat();
+        let image = || {
+            let data = grid.values().iter().flat_map(texel).collect();
+            grid_image("water_flow", grid.size(), TextureFormat::Rg32Float, data)
+        };
+        shared(&mut self.flows, grid, || images.add(image()))
+    }
+
+    /// Drops the textures of grids that nothing else uses.
+    fn collect(&mut self) {
+        self.beds.retain(|(grid, _)| Arc::strong_count(grid) > 1);
+        self.flows.retain(|(grid, _)| Arc::strong_count(grid) > 1);
+    }
+}
+
+fn shared<T>(
+    known: &mut Vec<(Arc<Grid<T>>, Handle<Image>)>,
+    grid: &Arc<Grid<T>>,
+    make: impl FnOnce() -> Handle<Image>,
+) -> Handle<Image> {
+    if let Some((_, image)) = known.iter().find(|(other, _)| Arc::ptr_eq(other, grid)) {
+        return image.clone();
+    }
+    let image = make();
+    known.push((grid.clone(), image.clone()));
+    image
+}
+
+fn grid_image(label: &'static str, size: UVec2, format: TextureFormat, data: Vec<u8>) -> Image {
+    let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
+    let mut image = Image::new(extent, TextureDimension::D2, data, format, RenderAssetUsages::RENDER_WORLD);
+    image.texture_descriptor.label = Some(label);
+    image
+}
+
+/// Spawns, shapes and despawns surface entities so that there is one for every water and viewing camera.
+pub(super) fn sync_surfaces(
+    mut commands: Commands,
+    mut assets: ResMut<SurfaceAssets>,
+    mut ground: ResMut<GroundTextures>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<SurfaceMaterial>>,
+    mut buffers: ResMut<Assets<ShaderBuffer>>,
+    mut reported: ResMut<Reported>,
+    viewers: Viewers,
+    waters: Query<(Entity, &WaterSurface, &ResolvedWater, &InheritedVisibility, Option<&RenderLayers>)>,
+    mut surfaces: Query<(Entity, &SurfaceOf, &mut SurfaceShape, &mut Mesh3d)>,
+) {
+    ground.collect();
+    let mut missing: HashSet<SurfaceOf> = viewers
+        .iter()
+        .flat_map(|viewer| waters.iter().map(move |water| SurfaceOf { water: water.0, viewer: viewer.entity }))
+        .collect();
+    let mut mesh_of = |shape: &SurfaceShape, assets: &mut SurfaceAssets| {
+        let make = || meshes.add(nested_grid(shape.cell, shape.cells, shape.rings));
+        Mesh3d(assets.meshes.entry(shape.key()).or_insert_with(make).clone())
+    };
+    for (entity, surface, mut shape, mut mesh) in &mut surfaces {
+        let water = waters.get(surface.water).ok().filter(|_| missing.remove(surface));
+        let Some((water, settings, resolved, visibility, layers)) = water else {
+            commands.entity(entity).despawn();
+            continue;
+        };
+        let wanted = SurfaceShape::new(water, settings, resolved, &mut reported);
+        if *shape != wanted {
+            *shape = wanted;
+            *mesh = mesh_of(&wanted, &mut assets);
+        }
+        let shown = visibility.get() && resolved.half_size != Vec2::ZERO;
+        let visible = if shown { Visibility::Visible } else { Visibility::Hidden };
+        commands.entity(entity).insert((visible, place(resolved), layers.cloned().unwrap_or_default()));
+    }
+    for surface in missing {
+        let Ok((water, settings, resolved, ..)) = waters.get(surface.water) else { continue };
+        let shape = SurfaceShape::new(water, settings, resolved, &mut reported);
+        let mut buffer = ShaderBuffer::from(GpuSurface::default());
+        buffer.buffer_description.label = Some("water_surface");
+        commands.spawn((
+            Name::new("Water surface"),
+            surface,
+            shape,
+            mesh_of(&shape, &mut assets),
+            MeshMaterial3d(materials.add(SurfaceMaterial {
+                surface: buffers.add(buffer),
+                mirror: None,
+                sky: None,
+                sky_light: None,
+                detail: assets.detail.clone(),
+                bed: None,
+                flow: None,
+            })),
+            // Placed and shown from the next frame on, when it is written for the first time.
+            Visibility::Hidden,
+            place(resolved),
+            (NotShadowCaster, NotShadowReceiver),
+        ));
+    }
+}
+
+/// Pose and bounds of a surface: its vertices are placed by the shader, so the bounds are what culling knows of it.
+fn place(water: &ResolvedWater) -> (Transform, GlobalTransform, Aabb) {
+    let amplitude = water.waves.total_amplitude() + 0.01;
+    let turn = Quat::from_rotation_y(-water.world_from_local.to_scale_angle_translation().1);
+    let center = water.world_from_local.translation;
+    let pose = Transform::from_xyz(center.x, water.level, center.y).with_rotation(turn);
+    let half = water.half_size + amplitude;
+    let bounds = Aabb3d::new(Vec3::ZERO, vec3(half.x, amplitude, half.y));
+    (pose, pose.into(), Aabb::from_min_max(bounds.min.into(), bounds.max.into()))
+}

@@ -1,0 +1,71 @@
+// What the surface of one water needs to know in one view. The Rust twin is `GpuSurface` in `gpu.rs`.
+#define_import_path freshet::surface::types
+
+struct Surface {
+    // World xz from local xz: turn, then shift.
+    world_from_local: mat2x2<f32>,
+    world_origin: vec2<f32>,        // units: m
+    half_size: vec2<f32>,           // units: m
+    level: f32,                     // world height of the still surface, units: m
+    mesh_cell: f32,                 // finest spacing of the mesh, units: m
+    mesh_center: vec2<f32>,         // local xz, units: m
+    mesh_reach: f32,                // half width of the finest part of the mesh, units: m
+    flags: u32,
+    view: u32,                      // what is drawn instead of water, see VIEW_*
+    wave_count: u32,
+    waves: array<vec4<f32>, #{MAX_WAVES}>, // wave vector (rad/m), amplitude (m), phase (rad)
+
+    bed_from_local: mat2x2<f32>,
+    bed_origin: vec2<f32>,          // units: m
+    bed_size: vec2<f32>,            // cells
+    bed_cell: f32,                  // units: m
+    bed_base: f32,                  // world height of elevation zero, units: m
+    fade_depth: f32,                // units: m
+
+    flow_cell: f32,                 // units: m
+    flow_size: vec2<f32>,           // cells
+    flow_cycle: f32,                // period of the two-phase drift, units: s
+    flow_phase: f32,                // 0…1
+
+    detail_slope: f32,              // factor on the slopes of the detail tile
+    detail_scale: f32,              // tiles per metre
+    detail_drift: vec4<f32>,        // shift of the two layers, tiles
+    roughness: f32,                 // slope variance of what no texture shows
+
+    index: f32,
+    absorption: vec3<f32>,          // units: 1/m
+    reflectivity: f32,
+    backscatter: vec3<f32>,         // units: 1/m
+    refraction: f32,
+    dull_color: vec3<f32>,
+    dullness: f32,
+    dispersion: f32,
+    light_path: f32,
+    edge_depth: f32,                // units: m
+    fresnel: u32,
+    fresnel_correction: f32,
+
+    mirror_distance: f32,           // assumed distance of mirrored things, units: m
+    mirror_distortion: f32,
+    mirror_clip_from_world: mat4x4<f32>,
+    sky_from_world: mat3x3<f32>,
+    sky_tint: vec3<f32>,            // factor that makes the sky's texels radiance as drawn
+}
+
+const FLAG_MIRROR: u32 = 1u;
+const FLAG_BED: u32 = 2u;
+const FLAG_FLOW: u32 = 4u;
+const FLAG_FOG: u32 = 8u;
+const FLAG_SUNLIGHT: u32 = 16u;
+
+const VIEW_WATER: u32 = 0u;
+const VIEW_REFLECTION: u32 = 1u;
+const VIEW_REFRACTION: u32 = 2u;
+const VIEW_FRESNEL: u32 = 3u;
+const VIEW_NORMAL: u32 = 4u;
+const VIEW_HEIGHT: u32 = 5u;
+const VIEW_EDGE: u32 = 6u;
+
+const FRESNEL_SIMPLE: u32 = 0u;
+const FRESNEL_SCHLICK: u32 = 1u;
+const FRESNEL_RECIPROCAL: u32 = 2u;

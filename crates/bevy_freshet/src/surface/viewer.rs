@@ -1,0 +1,150 @@
+//! The cameras that see water.
+use super::sync::SurfaceOf;
+use crate::{report::Reported, reflection::MirrorCamera};
+use bevy::{
+    camera::{Exposure, visibility::{RenderLayers, VisibleEntities}},
+    core_pipeline::prepass::DepthPrepass,
+    ecs::{query::QueryData, system::SystemParam},
+    light::{EnvironmentMapLight, ShadowFilteringMethod, Skybox},
+    pbr::DistanceFog,
+    prelude::*,
+};
+use core::any::TypeId;
+
+/// Put on a camera that shall not see any water: it gets no surfaces and no mirrors.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default)]
+#[reflect(Component, Default, Clone, Debug)]
+pub struct NoWater;
+
+/// What the water needs to know of a camera.
+#[derive(QueryData)]
+pub(crate) struct Viewer {
+    entity: Entity,
+    camera: &'static Camera,
+    pose: &'static GlobalTransform,
+    projection: &'static Projection,
+    exposure: Option<&'static Exposure>,
+    layers: Option<&'static RenderLayers>,
+    environment: Option<&'static EnvironmentMapLight>,
+    skybox: Option<&'static Skybox>,
+    fog: Option<&'static DistanceFog>,
+    ambient: Option<&'static AmbientLight>,
+    shadow_filter: Option<&'static ShadowFilteringMethod>,
+}
+
+/// A viewing camera at this instant.
+pub(crate) struct ViewerData<'a> {
+    pub entity: Entity,
+    pub camera: &'a Camera,
+    pub pose: &'a GlobalTransform,
+    pub projection: &'a Projection,
+    /// Size of the viewport, pixels.
+    pub viewport: UVec2,
+    pub exposure: Option<&'a Exposure>,
+    pub layers: Option<&'a RenderLayers>,
+    pub environment: Option<&'a EnvironmentMapLight>,
+    pub skybox: Option<&'a Skybox>,
+    fog: Option<&'a DistanceFog>,
+    ambient: Option<&'a AmbientLight>,
+    shadow_filter: Option<&'a ShadowFilteringMethod>,
+}
+
+impl ViewerData<'_> {
+    /// Gives `mirror` the fog, light and shadows of this camera.
+    pub fn insert_lighting(&self, mirror: &mut EntityCommands) {
+        fn copy<C: Component + Clone>(from: Option<&C>, to: &mut EntityCommands) {
+            match from {
+                Some(component) => to.insert(component.clone()),
+                None => to.remove::<C>(),
+            };
+        }
+        copy(self.environment, mirror);
+        copy(self.fog, mirror);
+        copy(self.ambient, mirror);
+        copy(self.shadow_filter, mirror);
+    }
+}
+
+/// All active 3D cameras but mirrors and those marked [`NoWater`].
+#[derive(SystemParam)]
+pub(crate) struct Viewers<'w, 's> {
+    cameras: Query<'w, 's, Viewer, (With<Camera3d>, Without<MirrorCamera>, Without<NoWater>)>,
+}
+
+impl Viewers<'_, '_> {
+    pub fn iter(&self) -> impl Iterator<Item = ViewerData<'_>> {
+        self.cameras.iter().filter_map(viewer)
+    }
+
+    pub fn get(&self, entity: Entity) -> Option<ViewerData<'_>> {
+        self.cameras.get(entity).ok().and_then(viewer)
+    }
+}
+
+fn viewer<'a>(item: ViewerItem<'a, '_>) -> Option<ViewerData<'a>> {
+    let viewport = item.camera.physical_viewport_size()?;
+    (item.camera.is_active && item.pose.is_finite() && viewport.min_element() > 0).then_some(ViewerData {
+        entity: item.entity,
+        camera: item.camera,
+        pose: item.pose,
+        projection: item.projection,
+        viewport,
+        exposure: item.exposure,
+        layers: item.layers,
+        environment: item.environment,
+        skybox: item.skybox,
+        fog: item.fog,
+        ambient: item.ambient,
+        shadow_filter: item.shadow_filter,
+    })
+}
+
+/// Gives every viewing camera the depth prepass from which the water reads how deep it is.
+pub(super) fn require_depth(
+    mut commands: Commands,
+    waters: Query<(), With<crate::body::Water>>,
+    cameras: Query<Entity, (With<Camera3d>, Without<MirrorCamera>, Without<NoWater>, Without<DepthPrepass>)>,
+) {
+    if !waters.is_empty() {
+        for camera in &cameras {
+            commands.entity(camera).insert(DepthPrepass);
+        }
+    }
+}
+
+/// Frames that a water may go unseen by any camera before it is worth a warning: cameras may be spawned late.
+const FRAMES_WITHOUT_CAMERA: u32 = 60;
+
+/// Warns once if there is water to draw but no camera at all.
+pub(super) fn report_missing_camera(
+    mut frames: Local<u32>,
+    mut reported: ResMut<Reported>,
+    waters: Query<Entity, With<crate::body::Water>>,
+    cameras: Query<(), (With<Camera3d>, Without<MirrorCamera>)>,
+) {
+    *frames = if cameras.is_empty() { *frames + 1 } else { 0 };
+    if *frames > FRAMES_WITHOUT_CAMERA
+        && let Some(water) = waters.iter().next()
+    {
+        reported.warn(water, "Water", "is not drawn: there is no Camera3d");
+    }
+}
+
+/// Takes out of every camera's list the surfaces that belong to another camera.
+///
+/// Render layers could do this too, but they are the game's, and there are too few.
+pub(super) fn show_each_viewer_its_own(
+    mut views: Query<(Entity, &mut VisibleEntities)>,
+    surfaces: Query<&SurfaceOf>,
+) {
+    if surfaces.is_empty() {
+        return;
+    }
+    for (view, mut visible) in &mut views {
+        let foreign = |entity: &Entity| surfaces.get(*entity).is_ok_and(|surface| surface.viewer != view);
+        let meshes = TypeId::of::<Mesh3d>();
+        if visible.get(meshes).iter().any(foreign) {
+            visible.get_mut(meshes).retain(|entity| !foreign(entity));
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! Fills the numbers and textures of every surface, every frame.
+use super::{
+    SurfaceView, WaterSurface,
+    gpu::GpuSurface,
+    material::SurfaceMaterial,
+    sync::{GroundTextures, SurfaceOf, SurfaceShape},
+    viewer::{ViewerData, Viewers},
+};
+use crate::{
+    body::{Fresnel, ResolvedWater, WaterOptics},
+    reflection::{MirrorKey, Mirrors, WaterReflection},
+    report::Reported,
+};
+use bevy::{
+    asset::RenderAssetUsages,
+    image::Image,
+    math::ops,
+    prelude::*,
+    render::{
+        render_resource::{Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension},
+        storage::ShaderBuffer,
+    },
+};
+
+/// Longest way that the current carries a ripple before it is faded out and starts anew, in tiles.
+const DRIFT_TILES: f32 = 0.5;
+
+/// The waters with everything that is written of them.
+type Waters<'w, 's> = Query<
+    'w,
+    's,
+    (Entity, &'static ResolvedWater, &'static WaterSurface, &'static WaterOptics, &'static WaterReflection),
+>;
+
+pub(super) fn write_surfaces(
+    time: Res<Time>,
+    clear_color: Res<ClearColor>,
+    mirrors: Res<Mirrors>,
+    mut ground: ResMut<GroundTextures>,
+    mut images: ResMut<Assets<Image>>,
+    mut buffers: ResMut<Assets<ShaderBuffer>>,
+    mut materials: ResMut<Assets<SurfaceMaterial>>,
+    mut reported: ResMut<Reported>,
+    mut plain_sky: Local<Option<Handle<Image>>>,
+    viewers: Viewers,
+    waters: Waters,
+    surfaces: Query<(&SurfaceOf, &SurfaceShape, &MeshMaterial3d<SurfaceMaterial>)>,
+) {
+    let plain_sky = plain_sky.get_or_insert_with(|| images.add(white_cube())).clone();
+    for (surface, shape, material_handle) in &surfaces {
+        let (Ok(water), Some(viewer)) = (waters.get(surface.water), viewers.get(surface.viewer)) else { continue };
+        let (entity, resolved, settings, optics, reflection) = water;
+        let mut gpu = GpuSurface::default();
+        let mut textures = Textures::default();
+        write_frame(&mut gpu, resolved, shape, &viewer);
+        write_optics(&mut gpu, entity, optics, &mut reported);
+        write_detail(&mut gpu, entity, settings, resolved, time.elapsed_secs_f64(), &mut reported);
+        write_ground(&mut gpu, &mut textures, resolved, &mut ground, &mut images);
+        write_mirror(&mut gpu, &mut textures, entity, reflection, resolved, &viewer, &mirrors, &mut reported);
+        write_sky(&mut gpu, &mut textures, &viewer, &clear_color, &plain_sky);
+
+        let Some(material) = materials.get(material_handle) else { continue };
+        let wanted = SurfaceMaterial {
+            mirror: textures.mirror,
+            sky: textures.sky,
+            sky_light: textures.sky_light,
+            bed: textures.bed,
+            flow: textures.flow,
+            ..material.clone()
+        };
+        if let Some(mut buffer) = buffers.get_mut(&wanted.surface) {
+            buffer.set_data(gpu);
+        }
+        // A touched material makes a new bind group.
+        if *material != wanted
+            && let Some(mut material) = materials.get_mut(material_handle)
+        {
+            *material = wanted;
+        }
+    }
+}
+
+#[derive(Default)]
+struct Textures {
+    mirror: Option<Handle<Image>>,
+    sky: Option<Handle<Image>>,
+    sky_light: Option<Handle<Image>>,
+    bed: Option<Handle<Image>>,
+    flow: Option<Handle<Image>>,
+}
+
+fn write_frame(gpu: &mut GpuSurface, water: &ResolvedWater, shape: &SurfaceShape, viewer: &ViewerData) {
+    gpu.world_from_local = water.world_from_local.matrix2;
+    gpu.world_origin = water.world_from_local.translation;
+    gpu.half_size = water.half_size;
+    gpu.level = water.level;
+    let eye = water.local_from_world.transform_point2(viewer.pose.translation().xz());
+    gpu.mesh_center = shape.center(eye, water.half_size);
+    gpu.mesh_cell = shape.cell;
+    gpu.mesh_reach = shape.cell * shape.cells as f32 * 0.5;
+    gpu.fade_depth = water.fade_depth;
+    gpu.wave_count = water.waves.trains.len() as u32;
+    for (slot, train) in gpu.waves.iter_mut().zip(&water.waves.trains) {
+        *slot = train.wave_vector.extend(train.amplitude).extend(train.phase);
+    }
+}
+
+fn write_optics(gpu: &mut GpuSurface, entity: Entity, optics: &WaterOptics, reported: &mut Reported) {
+    let usable = WaterOptics::default();
+    let mut clamp = |field, value, range, fallback| reported.clamp(entity, field, value, range, fallback);
+    gpu.index = clamp("WaterOptics::index", optics.index, 1.0..=3.0, usable.index);
+    gpu.reflectivity = clamp("WaterOptics::reflectivity", optics.reflectivity, 0.0..=1.0, 1.0);
+    gpu.refraction = clamp("WaterOptics::refraction", optics.refraction, 0.0..=1.0, 1.0);
+    gpu.dispersion = clamp("WaterOptics::dispersion", optics.dispersion, 0.0..=0.2, 0.0);
+    gpu.light_path = clamp("WaterOptics::light_path", optics.light_path, 0.0..=1.0, 1.0);
+    gpu.dullness = clamp("WaterOptics::dullness", optics.dullness, 0.0..=1.0, 0.0);
+    gpu.edge_depth = clamp("WaterOptics::edge_depth", optics.edge_depth, 0.0..=1e4, usable.edge_depth);
+    (gpu.fresnel, gpu.fresnel_correction) = match optics.fresnel {
+        Fresnel::Simple { correction } => (0, clamp("Fresnel::Simple::correction", correction, 0.0..=2.0, 1.8)),
+        Fresnel::Schlick => (1, 0.0),
+        Fresnel::Reciprocal => (2, 0.0),
+        Fresnel::Exact => (3, 0.0),
+    };
+    let mut clamp3 = |field, value, fallback| reported.clamp3(entity, field, value, 0.0..=1e4, fallback);
+    gpu.absorption = clamp3("WaterOptics::absorption", optics.absorption, usable.absorption);
+    gpu.backscatter = clamp3("WaterOptics::backscatter", optics.backscatter, usable.backscatter);
+    gpu.dull_color = clamp3("WaterOptics::dull_color", optics.dull_color.to_vec3(), Vec3::ZERO);
+    gpu.flags |= if optics.fog { GpuSurface::FOG } else { 0 };
+}
+
+/// The two layers of ripples travel with the phase speed of their mean wavelength, apart by an angle, and with the
+/// uniform part of the current.
+fn write_detail(
+    gpu: &mut GpuSurface,
+    entity: Entity,
+    settings: &WaterSurface,
+    water: &ResolvedWater,
+    time: f64,
+    reported: &mut Reported,
+) {
+    gpu.detail_slope = reported.clamp(entity, "WaterSurface::ripples", settings.ripples, 0.0..=1.0, 0.06);
+    let size = reported.clamp(entity, "WaterSurface::ripple_size", settings.ripple_size, 1e-3..=1e4, 4.0);
+    gpu.roughness = reported.clamp(entity, "WaterSurface::roughness", settings.roughness, 1e-4..=0.5, 0.002);
+    gpu.detail_scale = size.recip();
+    // The middle of the tile's octaves holds about 12 waves; the second layer is half as large.
+    let speed = |waves: f32| {
+        let wavenumber = core::f32::consts::TAU * waves / size;
+        freshet_hydro::waves::angular_frequency(wavenumber, f32::INFINITY) / wavenumber
+    };
+    let wind = water.waves.trains.first().map_or(Vec2::X, |train| train.wave_vector.normalize_or(Vec2::X));
+    let second = Mat2::from_cols(vec2(1.7321, 1.0), vec2(-1.0, 1.7321));
+    let drift = |velocity: Vec2| {
+        let shift = velocity.as_dvec2() * time / f64::from(size);
+        (shift - shift.floor()).as_vec2()
+    };
+    let first = drift(wind * speed(12.0) + water.drift);
+    let turned = drift(second * (Vec2::from_angle(0.7).rotate(wind) * speed(24.0) + water.drift));
+    gpu.detail_drift = first.extend(turned.x).extend(turned.y);
+    gpu.flags |= if settings.sunlight { GpuSurface::SUNLIGHT } else { 0 };
+    gpu.view = match settings.view {
+        SurfaceView::Water => 0,
+        SurfaceView::Reflection => 1,
+        SurfaceView::Refraction => 2,
+        SurfaceView::Fresnel => 3,
+        SurfaceView::Normal => 4,
+        SurfaceView::Height => 5,
+        SurfaceView::Edge => 6,
+    };
+    if let Some((map, scale)) = &water.flow {
+        // The fastest water drifts by a fixed share of a tile in a cycle: nothing is stretched far.
+        let fastest = map.values().iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt() * scale.abs();
+        gpu.flow_cycle = (DRIFT_TILES * size / fastest.max(1e-3)).min(20.0);
+        gpu.flow_phase = (time / f64::from(gpu.flow_cycle)).fract() as f32;
+    }
+}
+
+fn write_ground(
+    gpu: &mut GpuSurface,
+    textures: &mut Textures,
+    water: &ResolvedWater,
+    ground: &mut GroundTextures,
+    images: &mut Assets<Image>,
+) {
+    if let Some(bed) = &water.bed {
+        gpu.flags |= GpuSurface::BED;
+        gpu.bed_from_local = bed.bed_from_local.matrix2;
+        gpu.bed_origin = bed.bed_from_local.translation;
+        gpu.bed_size = bed.elevations.size().as_vec2();
+        gpu.bed_cell = bed.elevations.cell_size();
+        gpu.bed_base = bed.base;
+        textures.bed = Some(ground.bed(&bed.elevations, images));
+    }
+    if let Some((map, scale)) = &water.flow {
+        gpu.flags |= GpuSurface::FLOW;
+        gpu.flow_cell = map.cell_size();
+        gpu.flow_size = map.size().as_vec2();
+        // The factor is folded into the time that the map's velocity acts.
+        gpu.flow_cycle *= scale;
+        textures.flow = Some(ground.flow(map, images));
+    }
+}
+
+fn write_mirror(
+    gpu: &mut GpuSurface,
+    textures: &mut Textures,
+    entity: Entity,
+    reflection: &WaterReflection,
+    water: &ResolvedWater,
+    viewer: &ViewerData,
+    mirrors: &Mirrors,
+    reported: &mut Reported,
+) {
+    let mut clamp = |field, value, range, fallback| reported.clamp(entity, field, value, range, fallback);
+    gpu.mirror_distance = clamp("WaterReflection::distance", reflection.distance, 0.01..=1e5, 15.0);
+    gpu.mirror_distortion = clamp("WaterReflection::distortion", reflection.distortion, 0.0..=1.0, 1.0);
+    let mirror = mirrors.0.get(&MirrorKey::new(viewer.entity, water.level)).filter(|_| reflection.planar);
+    if let Some((mirror, clip_from_world)) = mirror.and_then(|mirror| Some((mirror, mirror.clip_from_world?))) {
+        gpu.flags |= GpuSurface::MIRROR;
+        gpu.mirror_clip_from_world = clip_from_world;
+        textures.mirror = Some(mirror.image.clone());
+    }
+}
+
+/// What is reflected where nothing is mirrored: the camera's environment map, else its skybox, else its clear colour.
+fn write_sky(
+    gpu: &mut GpuSurface,
+    textures: &mut Textures,
+    viewer: &ViewerData,
+    clear_color: &ClearColor,
+    plain_sky: &Handle<Image>,
+) {
+    let exposure = viewer.exposure.copied().unwrap_or_default().exposure();
+    let (sky, light, tint, rotation) = if let Some(map) = viewer.environment {
+        (map.specular_map.clone(), map.diffuse_map.clone(), Vec3::splat(map.intensity * exposure), map.rotation)
+    } else if let Some((skybox, image)) = viewer.skybox.and_then(|skybox| Some((skybox, skybox.image.clone()?))) {
+        (image.clone(), image, Vec3::splat(skybox.brightness * exposure), skybox.rotation)
+    } else {
+        let color = match viewer.camera.clear_color {
+            ClearColorConfig::Custom(color) => color,
+            ClearColorConfig::Default | ClearColorConfig::None => clear_color.0,
+        };
+        (plain_sky.clone(), plain_sky.clone(), color.to_linear().to_vec3(), Quat::IDENTITY)
+    };
+    gpu.sky_from_world = Mat3::from_quat(rotation.inverse());
+    gpu.sky_tint = tint;
+    textures.sky = Some(sky);
+    textures.sky_light = Some(light);
+}
+
+/// A sky of one colour, to be tinted.
+fn white_cube() -> Image {
+    let extent = Extent3d { width: 1, height: 1, depth_or_array_layers: 6 };
+    let format = TextureFormat::Rgba8Unorm;
+    let mut image =
+        Image::new_fill(extent, TextureDimension::D2, &[255; 4], format, RenderAssetUsages::RENDER_WORLD);
+    image.texture_descriptor.label = Some("water_plain_sky");
+    image.texture_view_descriptor =
+        Some(TextureViewDescriptor { dimension: Some(TextureViewDimension::Cube), ..default() });
+    image
+}
