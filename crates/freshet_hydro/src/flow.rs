@@ -1,7 +1,7 @@
 //! Steady flow of a river through its wetted channel.
 //!
 //! Depth-averaged flow in which friction balances the slope of the surface and inertia is left out (the diffusive wave;
-//! Vreugdenhil 1994, *Numerical Methods for Shallow-Water Flow*, section 2.6), with the friction law of Manning (1891):
+//! reviewed by Hunter et al. 2007, *Geomorphology* 90, 208–225), with the friction law of Manning (1891):
 //! ```text
 //! ∇·q = 0                                 continuity
 //! q = −d^(5/3) / (n √|∇η|) · ∇η           discharge per metre of width, m²/s
@@ -52,7 +52,7 @@ pub struct Reach {
 
 impl Reach {
     /// Manning roughness of a clean, straight, natural channel, in s/m^⅓ (Chow 1959, *Open-Channel Hydraulics*,
-    /// table 5-6, D-1a).
+    /// table 5-6, D-1 a 1).
     pub const NATURAL_CHANNEL: f32 = 0.03;
 
     /// A reach with the roughness of a natural channel, carrying `discharge` m³/s (above zero).

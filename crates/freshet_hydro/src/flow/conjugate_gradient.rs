@@ -3,7 +3,10 @@
 //! The matrix is that of Kirchhoff's law at every node: Σ conductance · (x_i − x_j) over its edges, plus an anchor
 //! conductance to a known value. It is symmetric, positive definite if every connected part is anchored, and an
 //! M-matrix, so that the incomplete Cholesky factorisation exists (Meijerink & van der Vorst 1977, *Mathematics of
-//! Computation* 31, theorem 2.4) and makes a good preconditioner.
+//! Computation* 31, 148–162) and makes a good preconditioner.
+
+/// The residual, relative to the right-hand side, below which rounding leaves nothing to gain.
+const SMALLEST_RESIDUAL: f64 = 1e-12;
 
 /// Conductances along the edges of a network and to known values outside it.
 pub(super) struct Conductances<'a> {
@@ -17,7 +20,7 @@ pub(super) struct Conductances<'a> {
 
 impl Conductances<'_> {
     /// Every edge's nodes and conductance.
-    fn iter(&self) -> impl DoubleEndedIterator<Item = (usize, usize, f64)> {
+    fn iter(&self) -> impl Iterator<Item = (usize, usize, f64)> {
         let edges = self.edges.iter().zip(&self.along);
         edges.map(|(&[a, b], &conductance)| (a as usize, b as usize, conductance))
     }
@@ -34,46 +37,52 @@ impl Conductances<'_> {
         }
     }
 
-    /// Diagonal of the incomplete Cholesky factors (D + L) D⁻¹ (D + Lᵀ), L being the matrix below its diagonal.
-    fn factorise(&self) -> Vec<f64> {
+    /// The incomplete factors (1 + L) D (1 + Lᵀ), L being as empty as the matrix below its diagonal.
+    fn factorise(&self) -> Factors {
         let mut diagonal = self.anchors.clone();
         for (a, b, conductance) in self.iter() {
             diagonal[a] += conductance;
             diagonal[b] += conductance;
         }
-        for (a, b, conductance) in self.iter() {
-            diagonal[b] -= conductance * conductance / diagonal[a];
+        let lower = self.iter().map(|(a, b, conductance)| {
+            let share = conductance / diagonal[a];
+            diagonal[b] -= conductance * share;
+            share
+        });
+        Factors {
+            lower: lower.collect(),
+            diagonal,
         }
-        diagonal
     }
 
     /// Solves the factorised system for `residual`.
-    fn precondition(&self, diagonal: &[f64], residual: &[f64], z: &mut [f64]) {
+    fn precondition(&self, factors: &Factors, residual: &[f64], z: &mut [f64]) {
         z.copy_from_slice(residual);
-        for (a, b, conductance) in self.iter() {
-            z[b] += conductance * z[a] / diagonal[a];
+        for (&[a, b], share) in self.edges.iter().zip(&factors.lower) {
+            z[b as usize] += share * z[a as usize];
         }
-        for (z, diagonal) in z.iter_mut().zip(diagonal) {
+        for (z, diagonal) in z.iter_mut().zip(&factors.diagonal) {
             *z /= diagonal;
         }
-        for (a, b, conductance) in self.iter().rev() {
-            z[a] += conductance * z[b] / diagonal[a];
+        for (&[a, b], share) in self.edges.iter().zip(&factors.lower).rev() {
+            z[a as usize] += share * z[b as usize];
         }
     }
 
     /// Solves for the values `x` at which Kirchhoff's sums equal `right`, starting from the `x` given.
     ///
-    /// Stops when the residual is `tolerance` times the length of `right`. Returns whether it got there within
-    /// 10 iterations per node.
-    pub fn solve(&self, right: &[f64], tolerance: f64, x: &mut [f64]) -> bool {
-        let diagonal = self.factorise();
+    /// Stops when the residual has shrunk to the share `reduction` of what it was, or to [`SMALLEST_RESIDUAL`]. Returns
+    /// whether it got there within 10 iterations per node.
+    pub fn solve(&self, right: &[f64], reduction: f64, x: &mut [f64]) -> bool {
+        let factors = self.factorise();
         let mut image = vec![0.0; x.len()];
         self.times(x, &mut image);
         let mut residual: Vec<f64> = right.iter().zip(&image).map(|(b, ax)| b - ax).collect();
-        let enough = tolerance * tolerance * dot(right, right);
+        let smallest = SMALLEST_RESIDUAL * SMALLEST_RESIDUAL * dot(right, right);
+        let enough = smallest.max(reduction * reduction * dot(&residual, &residual));
 
         let mut z = vec![0.0; x.len()];
-        self.precondition(&diagonal, &residual, &mut z);
+        self.precondition(&factors, &residual, &mut z);
         let mut direction = z.clone();
         let mut rz = dot(&residual, &z);
         for _ in 0..10 * x.len() {
@@ -84,7 +93,7 @@ impl Conductances<'_> {
             let step = rz / dot(&direction, &image);
             add_scaled(x, step, &direction);
             add_scaled(&mut residual, -step, &image);
-            self.precondition(&diagonal, &residual, &mut z);
+            self.precondition(&factors, &residual, &mut z);
             let next = dot(&residual, &z);
             for (direction, z) in direction.iter_mut().zip(&z) {
                 *direction = z + next / rz * *direction;
@@ -93,6 +102,14 @@ impl Conductances<'_> {
         }
         false
     }
+}
+
+/// An incomplete Cholesky factorisation.
+struct Factors {
+    /// −L of every edge.
+    lower: Vec<f64>,
+    /// D.
+    diagonal: Vec<f64>,
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -120,7 +137,7 @@ mod tests {
             anchors: vec![2.0, 0.0, 4.0, 0.0],
         };
         let mut volts = [0.0; 4];
-        assert!(network.solve(&[2.0, 0.0, 0.0, 0.0], 1e-12, &mut volts));
+        assert!(network.solve(&[2.0, 0.0, 0.0, 0.0], 0.0, &mut volts));
         let current = 1.0 / (1.0 / 2.0 + 1.0 / 1.75 + 1.0 / 4.0);
         let [first, last] = [1.0 - current / 2.0, current / 4.0];
         let middle = first - (first - last) * 0.75;
@@ -144,7 +161,7 @@ mod tests {
         };
         let right: Vec<f64> = chain.anchors.iter().map(|anchor| anchor * 7.0).collect();
         let mut x = vec![0.0; nodes as usize];
-        assert!(chain.solve(&right, 1e-12, &mut x));
+        assert!(chain.solve(&right, 0.0, &mut x));
         for x in x {
             assert_abs_diff_eq!(x, 7.0, epsilon = 1e-9);
         }

@@ -132,8 +132,8 @@ impl FlowField {
     /// velocity does; its direction is such that the flow is positive.
     pub fn sections(&self, count: usize) -> Vec<Section> {
         let mut fastest = vec![None; count];
-        for (cell, head) in self.head.iter().filter(|(_, head)| !head.is_nan()) {
-            let velocity = self.velocity.sample(self.velocity.position(cell));
+        let cells = self.head.iter().zip(self.velocity.values());
+        for ((cell, head), &velocity) in cells.filter(|((_, head), _)| !head.is_nan()) {
             let band = ((1.0 - head / self.head_drop) * count as f32) as usize;
             if let Some(best) = fastest.get_mut(band)
                 && best.is_none_or(|(_, other): (_, Vec2)| velocity.length() > other.length())
@@ -170,7 +170,7 @@ impl FlowField {
 
 /// Discharge in m³/s through a section, positive to the right-hand side of its direction, as a shader or a floating body
 /// would see it: the integral along the section of bilinear `velocity` (m/s) times depth under `level` over the bilinear
-/// `bed` (both in metres; where there are no data, and outside the grid, no depth).
+/// `bed` (both in metres; where there are no data, and outside the grid, no depth). The section has finite ends.
 ///
 /// `velocity` may come from [`steady_flow`](super::steady_flow) or from a painter; the two grids share their centre.
 pub fn discharge_across(

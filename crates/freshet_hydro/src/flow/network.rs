@@ -41,26 +41,20 @@ impl Network {
         let mut cuts = Vec::new();
         for face in faces(wet) {
             let sides = face.sides(wet);
-            let end = if !sides.iter().flatten().any(|&cell| wet.values()[cell]) {
+            if sides.iter().flatten().any(|&cell| !wet.values()[cell]) {
                 continue;
-            } else if face.crossing(wet, inflow) != 0.0 {
-                Some(End::Inflow)
-            } else if face.crossing(wet, outflow) != 0.0 {
-                Some(End::Outflow)
-            } else {
-                None
-            };
-            let on_land = sides.iter().flatten().any(|&cell| !wet.values()[cell]);
-            match (end, sides) {
-                _ if on_land => {}
-                (Some(end), sides) => cuts.push(Cut { face, end, sides }),
-                (None, [Some(before), Some(after)]) => {
-                    parts.join(before, after);
-                    pairs.push((face, before, after));
-                }
-                // The border of the grid is a wall unless a section lies on it.
-                (None, _) => {}
             }
+            if face.crossing(wet, inflow) != 0.0 {
+                let end = End::Inflow;
+                cuts.push(Cut { face, end, sides });
+            } else if face.crossing(wet, outflow) != 0.0 {
+                let end = End::Outflow;
+                cuts.push(Cut { face, end, sides });
+            } else if let [Some(before), Some(after)] = sides {
+                parts.join(before, after);
+                pairs.push((face, before, after));
+            }
+            // What is left, the border of the grid where no section lies on it, is a wall.
         }
         for (end, section) in [(End::Inflow, inflow), (End::Outflow, outflow)] {
             if !cuts.iter().any(|cut| cut.end == end) {
