@@ -1,1 +1,6 @@
 //! Raster formats of hydraulic models and the flow maps made from them. Knows no engine.
+//!
+//! Positions are those of [`freshet_hydro`]: metres from the centre of a raster, x to the east and z to the south.
+
+pub mod esri_ascii;
+pub mod flow_map;
