@@ -47,7 +47,7 @@ pub fn bark() -> Picture {
             alpha: height,
         }
     })
-    .halved(false)
-    .with_mean_albedo(ALBEDO, false)
+    .halved()
+    .with_mean_albedo(ALBEDO)
     .with_full_height()
 }

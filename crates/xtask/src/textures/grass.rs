@@ -9,7 +9,7 @@ use super::{
     colour::{Colour, mix, scaled, smoothstep},
     periodic::{Cells, Fractal},
     picture::{Picture, Texel},
-    ribbon::{Canvas, Curve, Edge, Ribbon},
+    ribbon::{Canvas, Curve, Ribbon},
 };
 
 /// Mean albedo of marsh grass, with the soil that shows between the blades.
@@ -32,7 +32,7 @@ pub fn grass() -> Picture {
             alpha: 0.0,
         }
     });
-    let mut canvas = Canvas::over(ground, Edge::Wrap);
+    let mut canvas = Canvas::over(ground);
     for _ in 0..BLADES {
         let root = [rng.f64(), rng.f64()];
         let tussock = tussocks.nearest(root);
@@ -79,9 +79,9 @@ pub fn grass() -> Picture {
         });
     }
     canvas
-        .into_relief()
-        .halved(false)
-        .with_mean_albedo(ALBEDO, false)
+        .finish()
+        .halved()
+        .with_mean_albedo(ALBEDO)
         .with_full_height()
 }
 

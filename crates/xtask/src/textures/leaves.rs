@@ -7,7 +7,7 @@ use fastrand::Rng;
 use super::{
     colour::{Colour, mix, scaled},
     picture::Picture,
-    ribbon::{Canvas, Curve, Edge, Point, Ribbon},
+    ribbon::{Canvas, Curve, Point, Ribbon},
 };
 
 /// Mean albedo of the leaves and twigs.
@@ -19,7 +19,7 @@ const TWIG: Colour = [0.10, 0.075, 0.04];
 /// Paints the leaves; the branch enters at the middle of the bottom edge.
 pub fn leaves() -> Picture {
     let mut rng = Rng::with_seed(53);
-    let mut canvas = Canvas::new(1024, Edge::Cut);
+    let mut canvas = Canvas::clear(1024);
     let branch = Curve([[0.5, 1.01, 0.3], [0.53, 0.7, 0.3], [0.5, 0.5, 0.3]]);
     canvas.draw(
         &Ribbon {
@@ -37,10 +37,10 @@ pub fn leaves() -> Picture {
         draw_twig(&mut canvas, &mut rng, [0.51, start, depth], heading);
     }
     canvas
-        .into_cut_out()
-        .halved(true)
-        .halved(true)
-        .with_mean_albedo(ALBEDO, true)
+        .finish()
+        .halved()
+        .halved()
+        .with_mean_albedo(ALBEDO)
         .with_colour_spread()
 }
 

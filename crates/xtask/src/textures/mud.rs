@@ -62,7 +62,8 @@ pub fn mud() -> Picture {
         let pebble = pebbles.nearest(bent);
         let size = pebble_sizes[pebble.index];
         if pebble.distance < size {
-            let round = 1.0 - pebble.distance / size * pebble.distance / size;
+            let share = pebble.distance / size;
+            let round = 1.0 - share * share;
             let tone = pebble_tones[pebble.index];
             let stone = mix([0.10, 0.095, 0.09], [0.27, 0.24, 0.20], tone * tone);
             albedo = mix(
@@ -83,8 +84,8 @@ pub fn mud() -> Picture {
             alpha: height,
         }
     })
-    .halved(false)
-    .with_mean_albedo(ALBEDO, false)
+    .halved()
+    .with_mean_albedo(ALBEDO)
     .with_full_height()
 }
 

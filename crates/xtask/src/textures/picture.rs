@@ -17,67 +17,84 @@ pub struct Texel {
     pub alpha: f64,
 }
 
+/// What the alpha of a picture means.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Alpha {
+    /// Height of the ground.
+    Height,
+    /// How much of a texel a leaf covers; what lies beyond has no colour.
+    Coverage,
+}
+
 /// A square of texels in rows from the top.
 pub struct Picture {
     /// Texels along each side.
     pub side: usize,
     /// `side` × `side` texels, row by row.
     pub texels: Vec<Texel>,
+    /// What each texel's alpha means.
+    pub alpha: Alpha,
 }
 
 impl Picture {
-    /// Evaluates `texel` at the middle of each texel; both coordinates run from 0 to 1, y downwards.
+    /// Ground: evaluates `texel` at the middle of each texel; both coordinates run from 0 to 1, y downwards.
     pub fn from_fn(side: usize, mut texel: impl FnMut([f64; 2]) -> Texel) -> Self {
         let middle = |index: usize| (index as f64 + 0.5) / side as f64;
         let texels = (0..side * side)
             .map(|index| texel([middle(index % side), middle(index / side)]))
             .collect();
-        Self { side, texels }
+        Self {
+            side,
+            texels,
+            alpha: Alpha::Height,
+        }
+    }
+
+    /// How much a texel's colour counts.
+    fn weight(&self, texel: &Texel) -> f64 {
+        match self.alpha {
+            Alpha::Height => 1.0,
+            Alpha::Coverage => texel.alpha,
+        }
     }
 
     /// Half the side, each texel the mean of four: what smooths the edges of a picture made twice too large.
-    /// Transparent texels count for nothing in the colour where `weighted` by alpha.
-    pub fn halved(&self, weighted: bool) -> Self {
+    pub fn halved(&self) -> Self {
         let side = self.side / 2;
         let texels = (0..side * side)
             .map(|index| {
                 let corner = index / side * 2 * self.side + index % side * 2;
                 let four = [0, 1, self.side, self.side + 1].map(|step| self.texels[corner + step]);
-                let alpha = four.iter().map(|texel| texel.alpha).sum::<f64>();
-                let weigh = |texel: &Texel| {
-                    if weighted && alpha > 0.0 {
-                        texel.alpha / alpha
-                    } else {
-                        0.25
-                    }
-                };
-                let albedo =
-                    std::array::from_fn(|c| four.iter().map(|t| weigh(t) * t.albedo[c]).sum());
+                let weight = four
+                    .iter()
+                    .map(|texel| self.weight(texel))
+                    .sum::<f64>()
+                    .max(f64::MIN_POSITIVE);
+                let share = |texel: &Texel| self.weight(texel) / weight;
                 Texel {
-                    albedo,
-                    alpha: alpha / 4.0,
+                    albedo: std::array::from_fn(|c| {
+                        four.iter().map(|t| share(t) * t.albedo[c]).sum()
+                    }),
+                    alpha: four.iter().map(|texel| texel.alpha).sum::<f64>() / 4.0,
                 }
             })
             .collect();
-        Self { side, texels }
+        Self {
+            side,
+            texels,
+            alpha: self.alpha,
+        }
     }
 
-    /// Scales each channel so that the whole picture reflects `mean` on average, weighted by alpha if it is coverage.
-    pub fn with_mean_albedo(mut self, mean: Colour, weighted: bool) -> Self {
-        let weight = |texel: &Texel| if weighted { texel.alpha } else { 1.0 };
-        let total: f64 = self.texels.iter().map(weight).sum();
-        let gain: Colour = std::array::from_fn(|channel| {
-            let sum: f64 = self
-                .texels
-                .iter()
-                .map(|texel| weight(texel) * texel.albedo[channel])
-                .sum();
-            mean[channel] * total / sum
+    /// Scales each channel so that the picture reflects `mean` on average.
+    pub fn with_mean_albedo(mut self, mean: Colour) -> Self {
+        let sum = |value: &dyn Fn(&Texel) -> f64| -> f64 { self.texels.iter().map(value).sum() };
+        let weight = sum(&|texel| self.weight(texel));
+        let gain: Colour = std::array::from_fn(|c| {
+            mean[c] * weight / sum(&|texel| self.weight(texel) * texel.albedo[c])
         });
         for texel in &mut self.texels {
-            texel.albedo = std::array::from_fn(|channel| {
-                (gain[channel] * texel.albedo[channel]).clamp(0.0, 1.0)
-            });
+            texel.albedo = std::array::from_fn(|c| (gain[c] * texel.albedo[c]).clamp(0.0, 1.0));
         }
         self
     }

@@ -5,7 +5,7 @@ use fastrand::Rng;
 use super::{
     colour::{Colour, mix, scaled, smoothstep},
     picture::Picture,
-    ribbon::{Canvas, Curve, Edge, Point, Ribbon},
+    ribbon::{Canvas, Curve, Point, Ribbon},
 };
 
 /// Mean albedo of reed in late summer.
@@ -17,16 +17,16 @@ const PLUME: Colour = [0.20, 0.145, 0.095];
 /// Paints the reed; it stands on the bottom edge.
 pub fn reed() -> Picture {
     let mut rng = Rng::with_seed(61);
-    let mut canvas = Canvas::new(1024, Edge::Cut);
+    let mut canvas = Canvas::clear(1024);
     for stem in 0..STEMS {
         let depth = f64::from(stem) / f64::from(STEMS);
         draw_stem(&mut canvas, &mut rng, depth);
     }
     canvas
-        .into_cut_out()
-        .halved(true)
-        .halved(true)
-        .with_mean_albedo(ALBEDO, true)
+        .finish()
+        .halved()
+        .halved()
+        .with_mean_albedo(ALBEDO)
         .with_colour_spread()
 }
 

@@ -2,7 +2,7 @@
 
 use super::{
     colour::{Colour, mix},
-    picture::{Picture, Texel},
+    picture::{Alpha, Picture, Texel},
 };
 
 /// x and y as shares of the picture, y downwards; z towards the viewer.
@@ -70,49 +70,32 @@ impl Place {
     }
 }
 
-/// What happens to a ribbon at the picture's edges.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Edge {
-    /// It comes in again on the other side.
-    Wrap,
-    /// It is cut off.
-    Cut,
-}
-
 /// A picture being drawn; its alpha is the z of what has been drawn, or −∞.
-pub struct Canvas {
-    picture: Picture,
-    edge: Edge,
-}
+pub struct Canvas(Picture);
 
 impl Canvas {
-    /// An empty canvas of `side` × `side` texels.
-    pub fn new(side: usize, edge: Edge) -> Self {
-        let empty = Texel {
+    /// An empty canvas of `side` × `side` texels, for a cut-out; ribbons end at its edges.
+    pub fn clear(side: usize) -> Self {
+        let nothing = Texel {
             albedo: [0.0; 3],
             alpha: f64::NEG_INFINITY,
         };
-        Self {
-            picture: Picture {
-                side,
-                texels: vec![empty; side * side],
-            },
-            edge,
-        }
+        Self(Picture {
+            side,
+            texels: vec![nothing; side * side],
+            alpha: Alpha::Coverage,
+        })
     }
 
-    /// Starts from a picture whose alpha is its height.
-    pub fn over(ground: Picture, edge: Edge) -> Self {
-        Self {
-            picture: ground,
-            edge,
-        }
+    /// Starts from a tile of ground; ribbons that leave it come in again on the other side.
+    pub fn over(ground: Picture) -> Self {
+        Self(ground)
     }
 
     /// Draws a ribbon where nothing nearer to the viewer has been drawn, coloured by `shade`.
     pub fn draw(&mut self, ribbon: &Ribbon, shade: impl Fn(Place) -> Colour) {
         // Points half a texel apart leave no holes.
-        let density = 2.0 * self.picture.side as f64;
+        let density = 2.0 * self.0.side as f64;
         let steps = (ribbon.curve.length() * density).ceil().max(1.0) as usize;
         for step in 0..=steps {
             let along = step as f64 / steps as f64;
@@ -144,26 +127,24 @@ impl Canvas {
     }
 
     fn texel(&mut self, x: f64, y: f64) -> Option<&mut Texel> {
-        let side = self.picture.side as isize;
+        let side = self.0.side as isize;
         let [column, row] = [x, y].map(|share| (share * side as f64).floor() as isize);
         let inside = (0..side).contains(&column) && (0..side).contains(&row);
-        if self.edge == Edge::Cut && !inside {
+        if self.0.alpha == Alpha::Coverage && !inside {
             return None;
         }
         let index = row.rem_euclid(side) * side + column.rem_euclid(side);
-        self.picture.texels.get_mut(index as usize)
+        self.0.texels.get_mut(index as usize)
     }
 
-    /// The picture with z as its alpha.
-    pub fn into_relief(self) -> Picture {
-        self.picture
-    }
-
-    /// The picture with alpha 1 where anything was drawn and 0 elsewhere.
-    pub fn into_cut_out(mut self) -> Picture {
-        for texel in &mut self.picture.texels {
-            texel.alpha = if texel.alpha.is_finite() { 1.0 } else { 0.0 };
+    /// The picture; of a cut-out, all that was drawn is covered.
+    pub fn finish(self) -> Picture {
+        let mut picture = self.0;
+        if picture.alpha == Alpha::Coverage {
+            for texel in &mut picture.texels {
+                texel.alpha = if texel.alpha.is_finite() { 1.0 } else { 0.0 };
+            }
         }
-        self.picture
+        picture
     }
 }

@@ -53,7 +53,7 @@ pub fn sand() -> Picture {
             alpha: height,
         }
     })
-    .halved(false)
-    .with_mean_albedo(ALBEDO, false)
+    .halved()
+    .with_mean_albedo(ALBEDO)
     .with_full_height()
 }
