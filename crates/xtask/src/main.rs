@@ -1,2 +1,51 @@
-//! The few commands a newcomer types.
-fn main() {}
+//! The few commands a newcomer types: `cargo xtask setup`, `river`, `test` and `assets`.
+
+mod command;
+mod river;
+mod setup;
+mod test;
+mod textures;
+
+use std::{ffi::OsString, process::ExitCode};
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+
+/// Chores of bevy_freshet.
+#[derive(Parser)]
+#[command(bin_name = "cargo xtask")]
+struct Xtask {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Makes sure that this machine can draw: a Vulkan driver, and the libraries of a window if there is a display
+    Setup,
+    /// Sets up, then runs the river example: in a window, or into river.png where there is no display
+    #[command(disable_help_flag = true)]
+    River {
+        /// Handed to the example; --help lists them
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
+    /// Sets up, then checks everything: format, lints, documentation, tests
+    Test,
+    /// Paints the textures in assets/textures anew
+    Assets,
+}
+
+fn main() -> Result<ExitCode> {
+    match Xtask::parse().task {
+        Task::Setup => {
+            if setup::run()? == setup::Outcome::AlreadyComplete {
+                println!("Everything is there; nothing to do.");
+            }
+        }
+        Task::River { args } => return river::run(args),
+        Task::Test => test::run()?,
+        Task::Assets => textures::write_all()?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
