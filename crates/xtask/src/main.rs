@@ -49,3 +49,27 @@ fn main() -> Result<ExitCode> {
     }
     Ok(ExitCode::SUCCESS)
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_commands_are_consistent() {
+        Xtask::command().debug_assert();
+    }
+
+    #[test]
+    fn the_example_gets_every_argument_after_river() {
+        let xtask = Xtask::try_parse_from(["xtask", "river", "--help", "--frames", "9"]);
+        let Ok(Xtask {
+            task: Task::River { args },
+        }) = xtask
+        else {
+            panic!("arguments of the example are refused");
+        };
+        assert_eq!(args, ["--help", "--frames", "9"]);
+    }
+}
