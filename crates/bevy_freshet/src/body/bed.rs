@@ -4,7 +4,7 @@ use bevy::{
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
 };
-use freshet_flood::esri_ascii;
+use freshet_flood::esri_ascii::{EsriError, EsriGrid};
 use freshet_hydro::grid::{Grid, GridError};
 use std::{path::Path, sync::Arc};
 
@@ -32,7 +32,7 @@ fn no_elevations() -> Arc<Grid<f32>> {
 pub enum WaterBedError {
     /// The file is not a readable ESRI ASCII grid.
     #[error(transparent)]
-    File(#[from] esri_ascii::EsriError),
+    File(#[from] EsriError),
     /// The elevations do not form a grid.
     #[error(transparent)]
     Grid(#[from] GridError),
@@ -58,7 +58,7 @@ impl WaterBed {
     /// # Errors
     /// [`WaterBedError`] naming file and line if the file cannot be read.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, WaterBedError> {
-        Self::new(esri_ascii::read_file(path.as_ref())?.grid)
+        Self::new(EsriGrid::read(path)?.grid)
     }
 
     /// A bed from a formula: `size` cells (columns, rows) of `cell_size` metres, `elevation` of local xz in metres.

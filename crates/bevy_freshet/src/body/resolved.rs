@@ -50,19 +50,17 @@ impl ResolvedWater {
         place.abs().cmple(self.half_size).all() && self.half_size.min_element() > 0.0
     }
 
-    /// Depth of the still water at local `place`, m: negative on dry land, infinite without a bed; NaN where the bed has
-    /// no data.
+    /// Depth of the still water at local `place`, m: negative on dry land, infinite without a bed. Where the bed has no
+    /// data there is no water: minus infinity.
     pub fn still_depth(&self, place: Vec2) -> f32 {
         let Some(bed) = &self.bed else { return f32::INFINITY };
-        let place = bed.bed_from_local.transform_point2(place);
-        self.level - (bed.base + bed.elevations.sample(place))
+        let elevation = bed.elevations.sample(bed.bed_from_local.transform_point2(place));
+        if elevation.is_nan() { f32::NEG_INFINITY } else { self.level - (bed.base + elevation) }
     }
 
     /// Share of the waves' height at local `place`.
     pub fn fade(&self, place: Vec2) -> f32 {
-        let depth = self.still_depth(place);
-        // Without data there is no shore to fade at, in the shader as well.
-        if depth.is_nan() { 1.0 } else { waves::shallow_fade(depth, self.fade_depth) }
+        waves::shallow_fade(self.still_depth(place), self.fade_depth)
     }
 
     /// Current at local `place`, local xz, m/s.
@@ -108,7 +106,7 @@ pub(crate) fn resolve_waters(
 }
 
 fn usable_half_size(entity: Entity, water: &Water, pose: &GlobalTransform, reported: &mut Reported) -> Vec2 {
-    if !pose.is_finite() {
+    if !pose.affine().is_finite() {
         reported.warn(entity, "Transform", "is not finite; the water is switched off");
         return Vec2::ZERO;
     }

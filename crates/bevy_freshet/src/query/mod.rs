@@ -56,8 +56,7 @@ fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSam
     let fade = water.fade(rest);
     let height = water.level + water.waves.displacement(rest, fade).y;
     let depth = water.still_depth(local) + (height - water.level);
-    // Not `depth <= 0`: without data (NaN) there is no water either.
-    if !(depth > 0.0) {
+    if depth <= 0.0 {
         return None;
     }
     let to_world = |v: Vec3| {

@@ -2,6 +2,7 @@
 #import bevy_pbr::mesh_view_bindings::view
 #import freshet::surface::bindings::surface
 #import freshet::surface::detail
+#import freshet::surface::ground
 #import freshet::surface::light
 #import freshet::surface::mirror
 #import freshet::surface::optics
@@ -13,6 +14,9 @@
 #ifdef TONEMAP_IN_SHADER
 #import bevy_core_pipeline::tonemapping::tone_mapping
 #endif
+
+// Deeper than this below ground there is no bed, but a cell without data.
+const NO_DATA_DEPTH: f32 = -1e4;
 
 struct Vertex {
     @location(0) position: vec3<f32>,
@@ -57,6 +61,10 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
     let facet = facet(in.rest);
     let to_eye = scene::direction_to_eye(in.world);
     let behind = scene::behind(pixel);
+    // Where the bed has no data there is no water.
+    if ground::still_depth(in.rest) < NO_DATA_DEPTH {
+        discard;
+    }
     if !from_above {
         return finish(seen_from_below(in, facet.normal, to_eye));
     }

@@ -79,6 +79,9 @@ impl FromWorld for SurfaceAssets {
     }
 }
 
+/// What the shader reads where the bed has no data, m.
+const NO_DATA_ELEVATION: f32 = 1e6;
+
 /// Beds and flow maps as textures, one for each grid however many waters use it.
 #[derive(Resource, Default)]
 pub(crate) struct GroundTextures {
@@ -88,8 +91,8 @@ pub(crate) struct GroundTextures {
 
 impl GroundTextures {
     pub fn bed(&mut self, grid: &Arc<Grid<f32>>, images: &mut Assets<Image>) -> Handle<Image> {
-        // Without data the shader must see deep water, as the fading of waves does.
-        let texel = |z: &f32| (if z.is_finite() { *z } else { -1e6 }).to_le_bytes();
+        // Where there is no data there is no water: the shader sees a mountain.
+        let texel = |z: &f32| (if z.is_finite() { *z } else { NO_DATA_ELEVATION }).to_le_bytes();
         let image = || {
             let data = grid.values().iter().flat_map(texel).collect();
             grid_image("water_bed", grid.size(), TextureFormat::R32Float, data)

@@ -83,7 +83,7 @@ impl Viewers<'_, '_> {
 
 fn viewer<'a>(item: ViewerItem<'a, '_>) -> Option<ViewerData<'a>> {
     let viewport = item.camera.physical_viewport_size()?;
-    (item.camera.is_active && item.pose.is_finite() && viewport.min_element() > 0).then_some(ViewerData {
+    (item.camera.is_active && item.pose.affine().is_finite() && viewport.min_element() > 0).then_some(ViewerData {
         entity: item.entity,
         camera: item.camera,
         pose: item.pose,
