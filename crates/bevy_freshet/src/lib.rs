@@ -5,6 +5,7 @@
 //!
 //! SI units throughout; y is up and the still surface is level.
 
+pub mod bed;
 pub mod body;
 pub mod query;
 pub mod reflection;
@@ -18,6 +19,7 @@ pub use schedule::WaterSystems;
 pub mod prelude {
     pub use crate::{
         WaterPlugin, WaterSystems,
+        bed::BedShading,
         body::{Fresnel, Water, WaterBed, WaterFlow, WaterOptics, WaterWaves},
         query::{WaterQuery, WaterSample},
         reflection::WaterReflection,
@@ -38,7 +40,7 @@ impl Plugin for WaterPlugin {
     fn build(&self, app: &mut App) {
         app.add_plugins(body::BodyPlugin);
         if app.get_sub_app(RenderApp).is_some() {
-            app.add_plugins((surface::SurfacePlugin, reflection::ReflectionPlugin));
+            app.add_plugins((surface::SurfacePlugin, reflection::ReflectionPlugin, bed::BedPlugin));
         }
     }
 }

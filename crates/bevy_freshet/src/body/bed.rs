@@ -5,7 +5,10 @@ use bevy::{
     prelude::*,
 };
 use freshet_flood::esri_ascii::{EsriError, EsriGrid};
-use freshet_hydro::grid::{Grid, GridError};
+use freshet_hydro::{
+    fill::fill_missing,
+    grid::{Grid, GridError},
+};
 use std::{path::Path, sync::Arc};
 
 /// Elevations of the ground on a grid that is centred on the entity; the entity's `Transform` places it (translation
@@ -72,6 +75,12 @@ impl WaterBed {
     ) -> Result<Self, WaterBedError> {
         let half = (size.as_vec2() - 1.0) * 0.5;
         Self::new(Grid::from_fn(size, cell_size, |cell| elevation((cell.as_vec2() - half) * cell_size))?)
+    }
+
+    /// The same bed with its gaps filled by a smooth continuation of the ground around them, at least `lowest` (m), so
+    /// that land goes on where the data ends.
+    pub fn filled(&self, lowest: f32) -> Self {
+        Self { elevations: Arc::new(fill_missing(&self.elevations, lowest)) }
     }
 
     /// The elevations, m; NaN where there is no data.

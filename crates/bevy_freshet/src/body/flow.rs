@@ -1,7 +1,8 @@
 //! The current of a water.
 use bevy::prelude::*;
+use freshet_flood::flow_map::{Defaults, FlowMap, FlowMapError};
 use freshet_hydro::grid::Grid;
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 /// The current: a velocity in m/s at every place of the water, seen and felt alike. Without this component the water
 /// stands still.
@@ -29,6 +30,17 @@ impl WaterFlow {
     /// Velocities (m/s) on a grid that is centred on the water.
     pub fn from_map(map: impl Into<Arc<Grid<Vec2>>>) -> Self {
         Self { uniform: Vec2::ZERO, scale: 1.0, map: Some(map.into()) }
+    }
+
+    /// A flow map as `freshet-flood flow` writes it: a picture whose red is the velocity to the east (+x) and whose green
+    /// is that to the south (+z), with half as still water, and which knows its own scale and cell size.
+    ///
+    /// For a painted picture, which knows neither, read it with [`FlowMap::read`] and give both there.
+    ///
+    /// # Errors
+    /// [`FlowMapError`] naming the file if it cannot be read.
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Self, FlowMapError> {
+        Ok(Self::from_map(FlowMap::read(path, Defaults::default())?.velocity))
     }
 }
 

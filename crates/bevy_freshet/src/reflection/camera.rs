@@ -65,7 +65,7 @@ struct Wanted {
 }
 
 /// Makes, moves, switches and removes mirror cameras.
-pub(super) fn update_mirrors(
+pub(crate) fn update_mirrors(
     mut commands: Commands,
     mut mirrors: ResMut<Mirrors>,
     mut images: ResMut<Assets<Image>>,

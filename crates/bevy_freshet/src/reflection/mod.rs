@@ -7,7 +7,7 @@ mod camera;
 mod projection;
 
 pub use camera::MirrorCamera;
-pub(crate) use camera::{MirrorKey, Mirrors};
+pub(crate) use camera::{MirrorKey, Mirrors, update_mirrors};
 
 use crate::schedule::WaterSystems;
 use bevy::{camera::visibility::RenderLayers, prelude::*};
@@ -55,6 +55,6 @@ pub(crate) struct ReflectionPlugin;
 impl Plugin for ReflectionPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Mirrors>()
-            .add_systems(PostUpdate, camera::update_mirrors.in_set(WaterSystems::Present));
+            .add_systems(PostUpdate, update_mirrors.in_set(WaterSystems::Present));
     }
 }

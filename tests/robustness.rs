@@ -1,0 +1,123 @@
+//! Repeatability, and what happens with unusable settings.
+use crate::stage::{SIZE, Stage, still_water};
+use bevy::prelude::*;
+use bevy_freshet::prelude::*;
+
+fn river_stage() -> (Stage, Entity) {
+    let mut stage = Stage::new();
+    let bed = WaterBed::from_fn(uvec2(30, 30), 1.0, |p| 0.05 * p.x * p.x - 1.0).unwrap();
+    stage.paint(bed.mesh(0..30, 0..30).unwrap(), LinearRgba::rgb(0.4, 0.3, 0.2), Transform::IDENTITY);
+    stage.spawn(bed);
+    stage.spawn((Water::new(Vec2::splat(30.0)), WaterOptics::RIVER, WaterFlow::uniform(vec2(0.0, 0.7))));
+    stage.spawn((DirectionalLight::default(), Transform::from_xyz(1.0, 2.0, -2.0).looking_at(Vec3::ZERO, Vec3::Y)));
+    let pose = Transform::from_xyz(2.0, 3.0, 12.0).looking_at(Vec3::ZERO, Vec3::Y);
+    let camera = stage.camera(PerspectiveProjection::default(), pose);
+    (stage, camera)
+}
+
+#[test]
+fn the_same_scene_gives_the_same_picture_bit_for_bit() {
+    let picture = || {
+        let (mut stage, camera) = river_stage();
+        stage.settle();
+        stage.run(0.5);
+        stage.picture(camera)
+    };
+    let (first, second) = (picture(), picture());
+    assert!(first.pixels().any(|(_, color)| color.max_element() > 0.01), "there is something to see");
+    assert!(first.bits() == second.bits());
+}
+
+#[test]
+fn the_picture_has_no_pixel_that_is_not_a_number() {
+    let (mut stage, camera) = river_stage();
+    stage.settle();
+    stage.run(0.5);
+    for (pixel, color) in stage.picture(camera).pixels() {
+        assert!(color.is_finite(), "{pixel}: {color}");
+    }
+}
+
+#[test]
+fn no_two_systems_race() {
+    use bevy::ecs::schedule::{LogLevel, ScheduleBuildSettings};
+    let mut stage = Stage::with(|app| {
+        app.add_plugins(WaterPlugin);
+        let strict = ScheduleBuildSettings { ambiguity_detection: LogLevel::Error, ..default() };
+        let world = app.world_mut();
+        world.resource_mut::<Schedules>().configure_schedules(strict.clone());
+        app.sub_app_mut(bevy::render::RenderApp)
+            .world_mut()
+            .resource_mut::<Schedules>()
+            .configure_schedules(strict);
+    });
+    stage.spawn(Water::default());
+    stage.app.update();
+    stage.app.update();
+}
+
+#[test]
+fn unusable_settings_neither_panic_nor_draw_anything_wrong() {
+    let (mut stage, camera) = river_stage();
+    let before = stage.picture(camera);
+    // Waters that cannot be drawn must leave the one that can alone.
+    let nan = f32::NAN;
+    stage.spawn(Water::new(Vec2::ZERO));
+    stage.spawn(Water::new(vec2(nan, 10.0)));
+    stage.spawn((Water::new(Vec2::splat(-5.0)), Transform::from_xyz(0.0, 1.0, 0.0)));
+    stage.spawn((Water::default(), Transform::from_xyz(nan, 0.0, 0.0)));
+    let after = stage.picture(camera);
+    assert!(before.bits() == after.bits());
+}
+
+#[test]
+fn parameters_that_are_not_numbers_fall_back_to_sane_ones() {
+    let mut stage = Stage::new();
+    stage.app.insert_resource(ClearColor(Color::linear_rgb(0.3, 0.5, 0.7)));
+    let (nan, inf) = (f32::NAN, f32::INFINITY);
+    let (water, ..) = still_water(Vec2::splat(40.0));
+    let train = bevy_freshet::body::Wave { direction: Vec2::splat(nan), wavelength: 0.0, steepness: inf, phase: nan };
+    stage.spawn((
+        water,
+        WaterWaves { trains: vec![train; 12], depth: nan, fade_depth: nan },
+        WaterSurface { cell: nan, cells: 0, ripples: inf, ripple_size: -1.0, roughness: nan, ..default() },
+        WaterReflection { resolution: nan, refresh: 0, clip_offset: nan, distance: -1.0, distortion: nan, ..default() },
+        WaterFlow { uniform: Vec2::splat(nan), scale: nan, ..default() },
+        WaterOptics {
+            absorption: Vec3::splat(nan),
+            backscatter: Vec3::splat(-1.0),
+            index: nan,
+            fresnel: Fresnel::Simple { correction: nan },
+            reflectivity: inf,
+            refraction: nan,
+            dispersion: nan,
+            light_path: nan,
+            dull_color: LinearRgba::rgb(nan, 0.0, 0.0),
+            dullness: nan,
+            edge_depth: nan,
+            fog: true,
+        },
+    ));
+    let pose = Transform::from_xyz(0.0, 3.0, 8.0).looking_at(Vec3::ZERO, Vec3::Y);
+    let camera = stage.camera(PerspectiveProjection::default(), pose);
+    let picture = stage.picture(camera);
+    for (pixel, color) in picture.pixels() {
+        assert!(color.is_finite() && color.min_element() >= 0.0, "{pixel}: {color}");
+    }
+    assert!(picture.at(SIZE.x / 2, SIZE.y - 5).max_element() > 0.0, "the water is drawn");
+}
+
+#[test]
+fn a_server_without_a_renderer_answers_queries() {
+    use bevy::ecs::system::RunSystemOnce;
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin, WaterPlugin));
+    app.world_mut().spawn((Water::default(), Transform::from_xyz(0.0, 3.0, 0.0)));
+    app.finish();
+    app.cleanup();
+    app.update();
+    app.update();
+    let sample = app.world_mut().run_system_once(|water: WaterQuery| water.sample(Vec3::ZERO)).unwrap().unwrap();
+    assert!((sample.height - 3.0).abs() < 0.2);
+    assert_eq!(sample.depth, f32::INFINITY);
+}
