@@ -6,4 +6,5 @@
 pub mod flow;
 pub mod grid;
 pub mod optics;
+pub mod voxels;
 pub mod waves;
