@@ -3,6 +3,7 @@
 use glam::{Mat3, Quat, Vec2, Vec3};
 
 use super::{Cell, VoxelHull, outer};
+use crate::waves::{GRAVITY, WATER_DENSITY};
 
 /// Where a body is: world from body.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -44,10 +45,7 @@ pub struct Wrench {
 
 impl Wrench {
     /// Neither force nor torque.
-    pub const ZERO: Self = Self {
-        force: Vec3::ZERO,
-        torque: Vec3::ZERO,
-    };
+    pub const ZERO: Self = Self { force: Vec3::ZERO, torque: Vec3::ZERO };
 
     /// Adds `force` (N) acting at `arm` (m) from the centre of mass.
     pub fn add_at(&mut self, force: Vec3, arm: Vec3) {
@@ -65,28 +63,22 @@ impl std::ops::Add for Wrench {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        Self {
-            force: self.force + other.force,
-            torque: self.torque + other.torque,
-        }
+        Self { force: self.force + other.force, torque: self.torque + other.torque }
     }
 }
 
 /// The liquid and the gravity that acts on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fluid {
-    /// Density ρ, in kg/m³, positive. Fresh water 1000, sea water 1025.
+    /// Density ρ, in kg/m³, positive. Default [`WATER_DENSITY`]; sea water has 1025.
     pub density: f32,
-    /// Gravity g, in m/s², not negative.
+    /// Gravity g, in m/s², not negative. Default [`GRAVITY`].
     pub gravity: f32,
 }
 
 impl Default for Fluid {
     fn default() -> Self {
-        Self {
-            density: 1000.0,
-            gravity: 9.81,
-        }
+        Self { density: WATER_DENSITY, gravity: GRAVITY }
     }
 }
 
@@ -104,10 +96,7 @@ pub struct Drag {
 
 impl Default for Drag {
     fn default() -> Self {
-        Self {
-            damping: 0.25,
-            coefficient: 0.8,
-        }
+        Self { damping: 0.25, coefficient: 0.8 }
     }
 }
 
@@ -142,11 +131,7 @@ pub struct Resistance {
 impl Default for Resistance {
     /// None. (The default of a matrix is the identity.)
     fn default() -> Self {
-        Self {
-            linear: Mat3::ZERO,
-            coupling: Mat3::ZERO,
-            angular: Mat3::ZERO,
-        }
+        Self { linear: Mat3::ZERO, coupling: Mat3::ZERO, angular: Mat3::ZERO }
     }
 }
 
@@ -171,11 +156,7 @@ impl Resistance {
 
 /// The matrix \[r\] with \[r\] v = r × v.
 fn cross_matrix(r: Vec3) -> Mat3 {
-    Mat3::from_cols(
-        Vec3::new(0.0, r.z, -r.y),
-        Vec3::new(-r.z, 0.0, r.x),
-        Vec3::new(r.y, -r.x, 0.0),
-    )
+    Mat3::from_cols(Vec3::new(0.0, r.z, -r.y), Vec3::new(-r.z, 0.0, r.x), Vec3::new(r.y, -r.x, 0.0))
 }
 
 /// The submerged part of a cell, seen from the world.

@@ -48,7 +48,7 @@ pub struct Cell {
 /// use glam::Vec3;
 ///
 /// let volume = 4.0 / 3.0 * std::f32::consts::PI;
-/// let ball = VoxelHull::new([Vec3::NEG_ONE, Vec3::ONE], 4, Some(volume), |p| p.length() - 1.0)?;
+/// let ball = VoxelHull::new([Vec3::NEG_ONE, Vec3::ONE], 4, |p| p.length() - 1.0)?.with_volume(volume)?;
 /// assert!((ball.volume() - volume).abs() < 1e-5);
 /// # Ok::<(), freshet_hydro::voxels::HullError>(())
 /// ```
@@ -86,15 +86,11 @@ impl VoxelHull {
     /// sampled at the middles of at least 3³ equal parts, and the distance tells how much of a part is covered where
     /// the surface crosses it. A shape that only knows in from out may answer −∞ and +∞, at the price of accuracy.
     ///
-    /// `volume`, in m³, is the exact one if the caller knows it, and scales all cells so that they add up to it;
-    /// without it the samples decide.
-    ///
     /// # Errors
-    /// [`HullError`], if the box, the volume, or what is found in the box is not a body.
+    /// [`HullError::Bounds`] if the box is no box, [`HullError::Empty`] if nothing is found in it.
     pub fn new(
         bounds: [Vec3; 2],
         cells_per_axis: usize,
-        volume: Option<f32>,
         mut distance: impl FnMut(Vec3) -> f32,
     ) -> Result<Self, HullError> {
         let [min, max] = bounds;
@@ -102,10 +98,6 @@ impl VoxelHull {
         if !(min.is_finite() && max.is_finite() && size.min_element() > 0.0) {
             return Err(HullError::Bounds { min, max });
         }
-        if let Some(volume) = volume.filter(|v| !(v.is_finite() && *v > 0.0)) {
-            return Err(HullError::Volume(volume));
-        }
-
         let cells_per_axis = cells_per_axis.clamp(1, MAX_CELLS_PER_AXIS);
         let samples_per_cell = SAMPLES_PER_AXIS.div_ceil(cells_per_axis).max(3);
         let samples = cells_per_axis * samples_per_cell;
@@ -118,33 +110,32 @@ impl VoxelHull {
             let covered = (0.5 - distance(point) * inverse_width).clamp(0.0, 1.0);
             if covered > 0.0 {
                 let cell = index / samples_per_cell;
-                moments[(cell.z * cells_per_axis + cell.y) * cells_per_axis + cell.x]
-                    .add(point, covered);
+                moments[(cell.z * cells_per_axis + cell.y) * cells_per_axis + cell.x].add(point, covered);
                 shadow.add(index, covered);
             }
         }
 
         let cells: Vec<Cell> = moments.iter().filter_map(|m| m.cell(step)).collect();
-        let sampled: f32 = cells.iter().map(|cell| cell.volume).sum();
         if cells.is_empty() {
             return Err(HullError::Empty);
         }
-        let hull = Self {
-            cells,
-            volume: sampled,
-            projected_area: shadow.area(step),
-        };
-        Ok(volume.map_or(hull.clone(), |volume| hull.with_volume(volume)))
+        Ok(Self { volume: cells.iter().map(|cell| cell.volume).sum(), projected_area: shadow.area(step), cells })
     }
 
-    /// The same cells scaled in volume to add up to `volume`, in m³.
-    fn with_volume(mut self, volume: f32) -> Self {
+    /// The same cells, scaled in volume to add up to `volume`, in m³: for shapes whose exact volume is known.
+    ///
+    /// # Errors
+    /// [`HullError::Volume`] if `volume` is not positive and finite.
+    pub fn with_volume(mut self, volume: f32) -> Result<Self, HullError> {
+        if !(volume.is_finite() && volume > 0.0) {
+            return Err(HullError::Volume(volume));
+        }
         let scale = volume / self.volume;
         for cell in &mut self.cells {
             cell.volume *= scale;
         }
         self.volume = volume;
-        self
+        Ok(self)
     }
 
     /// The cells that hold a part of the shape.
@@ -169,11 +160,7 @@ impl VoxelHull {
 
     /// Centroid of the whole shape, in m: where a homogeneous body has its centre of mass.
     pub fn centroid(&self) -> Vec3 {
-        self.cells
-            .iter()
-            .map(|cell| cell.centroid * cell.volume)
-            .sum::<Vec3>()
-            / self.volume
+        self.cells.iter().map(|cell| cell.centroid * cell.volume).sum::<Vec3>() / self.volume
     }
 
     /// Inertia about the centroid of a homogeneous body of mass 1 kg, in m². The parallel-axis theorem over the cells:
@@ -182,8 +169,7 @@ impl VoxelHull {
         let centre = self.centroid();
         let mut moments = Mat3::ZERO;
         for cell in &self.cells {
-            moments +=
-                (cell.covariance + outer(cell.centroid - centre)) * (cell.volume / self.volume);
+            moments += (cell.covariance + outer(cell.centroid - centre)) * (cell.volume / self.volume);
         }
         Mat3::from_diagonal(Vec3::splat(trace(&moments))) - moments
     }
@@ -214,11 +200,7 @@ struct Moments {
 }
 
 impl Moments {
-    const NONE: Self = Self {
-        weight: 0.0,
-        mean: Vec3::ZERO,
-        scatter: Mat3::ZERO,
-    };
+    const NONE: Self = Self { weight: 0.0, mean: Vec3::ZERO, scatter: Mat3::ZERO };
 
     fn add(&mut self, point: Vec3, weight: f32) {
         let before = self.weight;
@@ -234,8 +216,7 @@ impl Moments {
         (self.weight > 0.0).then(|| Cell {
             volume: self.weight * step.element_product(),
             centroid: self.mean,
-            covariance: self.scatter * self.weight.recip()
-                + Mat3::from_diagonal(step * step / 12.0),
+            covariance: self.scatter * self.weight.recip() + Mat3::from_diagonal(step * step / 12.0),
         })
     }
 }
@@ -248,18 +229,11 @@ struct Shadow {
 
 impl Shadow {
     fn new(samples: usize) -> Self {
-        Self {
-            samples,
-            covered: std::array::from_fn(|_| vec![0.0; samples * samples]),
-        }
+        Self { samples, covered: std::array::from_fn(|_| vec![0.0; samples * samples]) }
     }
 
     fn add(&mut self, i: USizeVec3, covered: f32) {
-        let columns = [
-            i.y * self.samples + i.z,
-            i.z * self.samples + i.x,
-            i.x * self.samples + i.y,
-        ];
+        let columns = [i.y * self.samples + i.z, i.z * self.samples + i.x, i.x * self.samples + i.y];
         for (shadow, column) in self.covered.iter_mut().zip(columns) {
             shadow[column] = covered.max(shadow[column]);
         }
@@ -267,11 +241,7 @@ impl Shadow {
 
     fn area(&self, step: Vec3) -> Vec3 {
         let [x, y, z] = [0, 1, 2].map(|axis: usize| self.covered[axis].iter().sum::<f32>());
-        Vec3::new(
-            x * step.y * step.z,
-            y * step.z * step.x,
-            z * step.x * step.y,
-        )
+        Vec3::new(x * step.y * step.z, y * step.z * step.x, z * step.x * step.y)
     }
 }
 

@@ -7,30 +7,27 @@ use glam::{EulerRot, Mat3, Quat, Vec2, Vec3};
 use proptest::prelude::*;
 
 use super::*;
+use crate::waves::{GRAVITY, WATER_DENSITY};
 
-const STILL: Surface = Surface {
-    height: 0.0,
-    slope: Vec2::ZERO,
-    velocity: Vec3::ZERO,
-};
+/// Weight of a cubic metre of water, N.
+const WEIGHT: f32 = WATER_DENSITY * GRAVITY;
+
+const STILL: Surface = Surface { height: 0.0, slope: Vec2::ZERO, velocity: Vec3::ZERO };
 
 fn cuboid(size: Vec3) -> VoxelHull {
-    VoxelHull::new([-size / 2.0, size / 2.0], 4, None, |_| f32::NEG_INFINITY).unwrap()
+    VoxelHull::new([-size / 2.0, size / 2.0], 4, |_| f32::NEG_INFINITY).unwrap()
 }
 
 fn sphere(radius: f32) -> VoxelHull {
     let volume = 4.0 / 3.0 * PI * radius.powi(3);
     let corner = Vec3::splat(radius);
-    VoxelHull::new([-corner, corner], 4, Some(volume), |p| p.length() - radius).unwrap()
+    VoxelHull::new([-corner, corner], 4, |p| p.length() - radius).unwrap().with_volume(volume).unwrap()
 }
 
 /// A capsule along y: a cylinder of half height `half` between two half spheres.
-fn capsule(half: f32, radius: f32, volume: Option<f32>) -> VoxelHull {
+fn capsule(half: f32, radius: f32) -> VoxelHull {
     let corner = Vec3::new(radius, half + radius, radius);
-    VoxelHull::new([-corner, corner], 4, volume, |p| {
-        (p - Vec3::Y * p.y.clamp(-half, half)).length() - radius
-    })
-    .unwrap()
+    VoxelHull::new([-corner, corner], 4, |p| (p - Vec3::Y * p.y.clamp(-half, half)).length() - radius).unwrap()
 }
 
 fn still_load(hull: &VoxelHull, height: f32, rotation: Quat) -> Load {
@@ -59,14 +56,10 @@ fn equilibrium(hull: &VoxelHull, rotation: Quat, s: f32) -> f32 {
 
 #[test]
 fn sampled_volumes_are_near_and_given_ones_exact() {
-    assert_relative_eq!(
-        cuboid(Vec3::new(1.0, 2.0, 3.0)).volume(),
-        6.0,
-        max_relative = 1e-5
-    );
+    assert_relative_eq!(cuboid(Vec3::new(1.0, 2.0, 3.0)).volume(), 6.0, max_relative = 1e-5);
     let exact = PI * 0.3f32.powi(2) * 1.0 + 4.0 / 3.0 * PI * 0.3f32.powi(3);
-    assert_relative_eq!(capsule(0.5, 0.3, None).volume(), exact, max_relative = 0.02);
-    let scaled = capsule(0.5, 0.3, Some(exact));
+    assert_relative_eq!(capsule(0.5, 0.3).volume(), exact, max_relative = 0.02);
+    let scaled = capsule(0.5, 0.3).with_volume(exact).unwrap();
     let cells: f32 = scaled.cells().iter().map(|cell| cell.volume).sum();
     assert_relative_eq!(cells, exact, max_relative = 1e-5);
     assert_relative_eq!(sphere(1.0).volume(), 4.0 / 3.0 * PI, max_relative = 1e-6);
@@ -76,26 +69,18 @@ fn sampled_volumes_are_near_and_given_ones_exact() {
 #[test]
 fn inertia_comes_from_the_cells() {
     let cube = cuboid(Vec3::splat(2.0)).unit_inertia();
-    assert_relative_eq!(
-        cube,
-        Mat3::from_diagonal(Vec3::splat(4.0 / 6.0)),
-        epsilon = 1e-5
-    );
+    assert_relative_eq!(cube, Mat3::from_diagonal(Vec3::splat(4.0 / 6.0)), epsilon = 1e-5);
     let ball = sphere(0.5).unit_inertia();
     assert_relative_eq!(ball, Mat3::from_diagonal(Vec3::splat(0.1)), epsilon = 2e-3);
     let away = Vec3::new(100.0, -50.0, 20.0);
-    let far = VoxelHull::new([away, away + 2.0], 4, None, |_| f32::NEG_INFINITY).unwrap();
+    let far = VoxelHull::new([away, away + 2.0], 4, |_| f32::NEG_INFINITY).unwrap();
     assert_relative_eq!(far.centroid(), away + 1.0, epsilon = 1e-4);
     assert_relative_eq!(far.unit_inertia(), cube, epsilon = 1e-4);
 }
 
 #[test]
 fn shadows_are_those_of_the_shape() {
-    assert_relative_eq!(
-        cuboid(Vec3::new(1.0, 2.0, 3.0)).projected_area(),
-        Vec3::new(6.0, 3.0, 2.0),
-        epsilon = 1e-4
-    );
+    assert_relative_eq!(cuboid(Vec3::new(1.0, 2.0, 3.0)).projected_area(), Vec3::new(6.0, 3.0, 2.0), epsilon = 1e-4);
     assert_relative_eq!(sphere(1.0).projected_area(), Vec3::splat(PI), epsilon = 0.1);
 }
 
@@ -104,14 +89,10 @@ fn shadows_are_those_of_the_shape() {
 fn sphere_drafts() {
     let radius = 0.7;
     let hull = sphere(radius);
-    for s in [0.1, 0.25, 0.5, 0.75, 0.9] {
-        let angle = ((1.0 - 2.0 * s as f32).acos() + 4.0 * PI) / 3.0;
+    for s in [0.1_f32, 0.25, 0.5, 0.75, 0.9] {
+        let angle = ((1.0 - 2.0 * s).acos() + 4.0 * PI) / 3.0;
         let exact = radius * (1.0 + 2.0 * angle.cos());
-        for rotation in [
-            Quat::IDENTITY,
-            Quat::from_rotation_x(0.6),
-            Quat::from_euler(EulerRot::XYZ, 0.4, 1.0, 0.7),
-        ] {
+        for rotation in [Quat::IDENTITY, Quat::from_rotation_x(0.6), Quat::from_euler(EulerRot::XYZ, 0.4, 1.0, 0.7)] {
             let draft = radius - equilibrium(&hull, rotation, s);
             assert_relative_eq!(draft, exact, max_relative = 0.02, epsilon = 0.02 * radius);
         }
@@ -121,7 +102,7 @@ fn sphere_drafts() {
 #[test]
 fn box_drafts_are_exact() {
     let size = Vec3::new(2.0, 0.6, 1.0);
-    for s in [0.1, 0.25, 0.5, 0.75, 0.9] {
+    for s in [0.1_f32, 0.25, 0.5, 0.75, 0.9] {
         let draft = 0.3 - equilibrium(&cuboid(size), Quat::IDENTITY, s);
         assert_relative_eq!(draft, s * 0.6, max_relative = 1e-4);
     }
@@ -130,12 +111,8 @@ fn box_drafts_are_exact() {
 /// A lying capsule cuts the water in circle segments; half of it is under at half density.
 #[test]
 fn capsule_floats_half_under_at_half_density() {
-    let hull = capsule(0.5, 0.3, None);
-    for rotation in [
-        Quat::IDENTITY,
-        Quat::from_rotation_x(PI / 2.0),
-        Quat::from_rotation_z(0.5),
-    ] {
+    let hull = capsule(0.5, 0.3);
+    for rotation in [Quat::IDENTITY, Quat::from_rotation_x(PI / 2.0), Quat::from_rotation_z(0.5)] {
         assert!(equilibrium(&hull, rotation, 0.5).abs() < 0.02 * 0.6);
     }
 }
@@ -143,18 +120,11 @@ fn capsule_floats_half_under_at_half_density() {
 /// Archimedes: a submerged body of any shape and pose is pushed by ρgV through its centroid.
 #[test]
 fn submerged_push_is_that_of_archimedes() {
-    let hull = capsule(0.5, 0.3, None);
+    let hull = capsule(0.5, 0.3);
     let load = still_load(&hull, -5.0, Quat::from_euler(EulerRot::XYZ, 0.4, 1.0, 0.7));
-    assert_relative_eq!(
-        load.pressure.force,
-        Vec3::Y * 9810.0 * hull.volume(),
-        max_relative = 1e-4
-    );
+    assert_relative_eq!(load.pressure.force, Vec3::Y * WEIGHT * hull.volume(), max_relative = 1e-4);
     assert!(load.pressure.torque.length() < 1e-4 * load.pressure.force.length());
-    assert_eq!(
-        still_load(&hull, 5.0, Quat::IDENTITY).pressure,
-        Wrench::ZERO
-    );
+    assert_eq!(still_load(&hull, 5.0, Quat::IDENTITY).pressure, Wrench::ZERO);
 }
 
 /// Under a slope s the push is ρgV(ŷ − s) (divergence theorem): floats slide down waves.
@@ -162,28 +132,10 @@ fn submerged_push_is_that_of_archimedes() {
 fn a_slope_pushes_downhill() {
     let hull = cuboid(Vec3::ONE);
     let slope = Vec2::new(0.1, -0.2);
-    let water = |at: Vec2| {
-        Some(Surface {
-            height: 10.0 + slope.dot(at),
-            slope,
-            velocity: Vec3::ZERO,
-        })
-    };
+    let water = |at: Vec2| Some(Surface { height: 10.0 + slope.dot(at), slope, velocity: Vec3::ZERO });
     let (motion, fluid, drag) = (Motion::default(), Fluid::default(), Drag::default());
-    let load = hull.load(
-        &Pose::default(),
-        Vec3::ZERO,
-        &motion,
-        &fluid,
-        &drag,
-        0.0,
-        water,
-    );
-    assert_relative_eq!(
-        load.pressure.force,
-        9810.0 * Vec3::new(-0.1, 1.0, 0.2),
-        max_relative = 1e-4
-    );
+    let load = hull.load(&Pose::default(), Vec3::ZERO, &motion, &fluid, &drag, 0.0, water);
+    assert_relative_eq!(load.pressure.force, WEIGHT * Vec3::new(-0.1, 1.0, 0.2), max_relative = 1e-4);
 }
 
 /// Box 2 × 1 × 0.6 m of half density: GM = 0.12778 m, so the righting moment at a small tilt φ is −ρgV·GM·φ.
@@ -192,7 +144,7 @@ fn a_tilted_box_is_righted_as_its_metacentre_says() {
     let hull = cuboid(Vec3::new(2.0, 0.6, 1.0));
     let tilt = 0.02;
     let load = still_load(&hull, 0.0, Quat::from_rotation_x(tilt));
-    let exact = -9810.0 * 0.6 * 0.127_78 * tilt;
+    let exact = -WEIGHT * 0.6 * 0.127_78 * tilt;
     assert_relative_eq!(load.pressure.torque.x, exact, max_relative = 0.1);
 }
 
@@ -202,10 +154,7 @@ fn a_half_dense_cube_tips_over_and_a_light_one_stands() {
     let hull = cuboid(Vec3::ONE);
     let moment = |s: f32| {
         let rotation = Quat::from_rotation_z(0.1);
-        still_load(&hull, equilibrium(&hull, rotation, s), rotation)
-            .pressure
-            .torque
-            .z
+        still_load(&hull, equilibrium(&hull, rotation, s), rotation).pressure.torque.z
     };
     assert!(moment(0.5) > 0.0);
     assert!(moment(0.1) < 0.0);
@@ -213,35 +162,18 @@ fn a_half_dense_cube_tips_over_and_a_light_one_stands() {
 
 /// A body let go in a stream of 1 m/s, stepped as a solver would step it.
 fn drift(hull: &VoxelHull, s: f32, dt: f32, seconds: f32) -> Vec<f32> {
-    let mass = s * 1000.0 * hull.volume();
+    let mass = s * WATER_DENSITY * hull.volume();
     let inverse_inertia = (hull.unit_inertia() * mass).inverse();
-    let stream = Surface {
-        velocity: Vec3::X,
-        ..STILL
-    };
+    let stream = Surface { velocity: Vec3::X, ..STILL };
     let (fluid, drag) = (Fluid::default(), Drag::default());
-    let weight = Wrench {
-        force: Vec3::NEG_Y * mass * 9.81,
-        torque: Vec3::ZERO,
-    };
+    let weight = Wrench { force: Vec3::NEG_Y * mass * GRAVITY, torque: Vec3::ZERO };
     let mut position = Vec3::Y * equilibrium(hull, Quat::IDENTITY, s);
     let mut motion = Motion::default();
     (0..(seconds / dt) as usize)
         .map(|_| {
-            let pose = Pose {
-                position,
-                rotation: Quat::IDENTITY,
-            };
-            let load = hull.load(&pose, position, &motion, &fluid, &drag, dt, |_| {
-                Some(stream)
-            });
-            let wrench = load.over_step(
-                &motion,
-                Vec3::splat(mass.recip()),
-                inverse_inertia,
-                weight,
-                dt,
-            );
+            let pose = Pose { position, rotation: Quat::IDENTITY };
+            let load = hull.load(&pose, position, &motion, &fluid, &drag, dt, |_| Some(stream));
+            let wrench = load.over_step(&motion, Vec3::splat(mass.recip()), inverse_inertia, weight, dt);
             motion.linear += (wrench.force + weight.force) * (dt / mass);
             position += motion.linear * dt;
             motion.linear.x
@@ -254,16 +186,9 @@ fn a_stream_carries_bodies_to_its_speed_without_overshoot() {
     for (size, s) in [(1.0, 0.5), (0.1, 0.05), (0.02, 0.01), (3.0, 0.9)] {
         for dt in [1.0 / 60.0, 1.0 / 20.0] {
             let speeds = drift(&cuboid(Vec3::splat(size)), s, dt, 10.0);
-            assert!(
-                speeds.iter().all(|v| *v <= 1.0 + 1e-4),
-                "overshoot of a {size} m cube at {dt} s"
-            );
+            assert!(speeds.iter().all(|v| *v <= 1.0 + 1e-4), "overshoot of a {size} m cube at {dt} s");
             assert!(speeds.is_sorted_by(|a, b| *a <= *b + 1e-5));
-            assert!(
-                speeds.last().is_some_and(|v| *v > 0.95),
-                "{size} m cube: {:?}",
-                speeds.last()
-            );
+            assert!(speeds.last().is_some_and(|v| *v > 0.95), "{size} m cube: {:?}", speeds.last());
         }
     }
 }
@@ -273,54 +198,25 @@ fn a_stream_carries_bodies_to_its_speed_without_overshoot() {
 fn a_body_in_balance_stays_so() {
     let hull = cuboid(Vec3::ONE);
     let load = still_load(&hull, 0.0, Quat::IDENTITY);
-    let weight = Wrench {
-        force: -load.pressure.force,
-        torque: Vec3::ZERO,
-    };
+    let weight = Wrench { force: -load.pressure.force, torque: Vec3::ZERO };
     for dt in [1e-3, 0.02, 0.5] {
-        let wrench = load.over_step(
-            &Motion::default(),
-            Vec3::splat(2e-3),
-            Mat3::IDENTITY * 0.01,
-            weight,
-            dt,
-        );
-        assert_relative_eq!(
-            wrench.force,
-            load.pressure.force,
-            epsilon = 1e-5 * load.pressure.force.y
-        );
+        let wrench = load.over_step(&Motion::default(), Vec3::splat(2e-3), Mat3::IDENTITY * 0.01, weight, dt);
+        assert_relative_eq!(wrench.force, load.pressure.force, epsilon = 1e-5 * load.pressure.force.y);
     }
 }
 
 #[test]
 fn what_is_no_body_is_refused() {
     let unit = [Vec3::ZERO, Vec3::ONE];
-    assert_eq!(
-        VoxelHull::new(unit, 4, None, |_| f32::INFINITY),
-        Err(HullError::Empty)
-    );
-    assert_eq!(
-        VoxelHull::new(unit, 4, Some(0.0), |_| f32::NEG_INFINITY),
-        Err(HullError::Volume(0.0))
-    );
+    assert_eq!(VoxelHull::new(unit, 4, |_| f32::INFINITY), Err(HullError::Empty));
+    let cube = VoxelHull::new(unit, 4, |_| f32::NEG_INFINITY).unwrap();
+    assert_eq!(cube.clone().with_volume(0.0), Err(HullError::Volume(0.0)));
+    assert!(cube.with_volume(f32::NAN).is_err());
     let flat = [Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0)];
-    assert!(matches!(
-        VoxelHull::new(flat, 4, None, |_| f32::NEG_INFINITY),
-        Err(HullError::Bounds { .. })
-    ));
+    assert!(matches!(VoxelHull::new(flat, 4, |_| f32::NEG_INFINITY), Err(HullError::Bounds { .. })));
     let nan = [Vec3::NAN, Vec3::ONE];
-    assert!(matches!(
-        VoxelHull::new(nan, 4, None, |_| f32::NEG_INFINITY),
-        Err(HullError::Bounds { .. })
-    ));
-    assert_eq!(
-        VoxelHull::new(unit, 0, None, |_| f32::NEG_INFINITY)
-            .unwrap()
-            .cells()
-            .len(),
-        1
-    );
+    assert!(matches!(VoxelHull::new(nan, 4, |_| f32::NEG_INFINITY), Err(HullError::Bounds { .. })));
+    assert_eq!(VoxelHull::new(unit, 0, |_| f32::NEG_INFINITY).unwrap().cells().len(), 1);
 }
 
 proptest! {
@@ -334,7 +230,7 @@ proptest! {
         dt in 0.001f32..0.1,
     ) {
         let hull = cuboid(Vec3::new(size, 0.5 * size, 2.0 * size));
-        let mass = s * 1000.0 * hull.volume();
+        let mass = s * WATER_DENSITY * hull.volume();
         let inertia = hull.unit_inertia() * mass;
         let before = Motion { linear: linear.into(), angular: angular.into() };
         let fluid = Fluid { gravity: 0.0, ..Fluid::default() };
