@@ -7,4 +7,5 @@ pub mod fill;
 pub mod flow;
 pub mod grid;
 pub mod optics;
+pub mod voxels;
 pub mod waves;

@@ -1,0 +1,139 @@
+//! The water around a body, looked up once a step on a lattice over its footprint.
+
+use super::{
+    floating::Floating,
+    hull::Hull,
+    solid::bounds,
+};
+use crate::query::{WaterQuery, WaterSample};
+use bevy::prelude::*;
+use bevy_rapier3d::{
+    plugin::context::{RapierContextEntityLink, RapierRigidBodySet},
+    prelude::RapierRigidBodyHandle,
+};
+use freshet_hydro::voxels::Surface;
+
+/// Water on an n × n lattice that spans a rectangle of the xz plane. A body has many more cells than the lattice has
+/// places, and a search for the wave above a place costs more than a cell.
+#[derive(Default)]
+pub(super) struct Footprint {
+    min: Vec2,
+    size: Vec2,
+    places: usize,
+    samples: Vec<Option<Surface>>,
+    /// Height of the body's lowest point, m.
+    pub(super) lowest: f32,
+}
+
+impl Footprint {
+    /// Looks up the water at `places`² (at least 2²) points from corner to corner of `area`.
+    fn look_up(&mut self, area: Rect, places: usize, water: impl Fn(Vec2) -> Option<Surface>) {
+        self.min = area.min;
+        self.size = area.size();
+        self.places = places.max(2);
+        let step = self.size / (self.places - 1) as f32;
+        self.samples.clear();
+        for row in 0..self.places {
+            for column in 0..self.places {
+                self.samples.push(water(self.min + step * Vec2::new(column as f32, row as f32)));
+            }
+        }
+    }
+
+    /// Whether no place has water.
+    pub(super) fn is_dry(&self) -> bool {
+        self.samples.iter().all(Option::is_none)
+    }
+
+    /// Water at `place`, bilinear between the four places around it. Where some of them are dry the wet ones count,
+    /// and nothing if they are the smaller part.
+    pub(super) fn at(&self, place: Vec2) -> Option<Surface> {
+        let cells = (self.places - 1) as f32;
+        let at = ((place - self.min) / self.size.max(Vec2::splat(f32::MIN_POSITIVE))).clamp(Vec2::ZERO, Vec2::ONE) * cells;
+        let first = at.floor().min(Vec2::splat(cells - 1.0));
+        let part = at - first;
+        let corner = first.y as usize * self.places + first.x as usize;
+        let weights = [
+            (corner, (1.0 - part.x) * (1.0 - part.y)),
+            (corner + 1, part.x * (1.0 - part.y)),
+            (corner + self.places, (1.0 - part.x) * part.y),
+            (corner + self.places + 1, part.x * part.y),
+        ];
+        let mut wet = 0.0;
+        let mut sum = Surface::default();
+        for (index, weight) in weights {
+            if let Some(Some(water)) = self.samples.get(index) {
+                wet += weight;
+                sum.height += weight * water.height;
+                sum.slope += weight * water.slope;
+                sum.velocity += weight * water.velocity;
+            }
+        }
+        (wet >= 0.5).then(|| Surface {
+            height: sum.height / wet,
+            slope: sum.slope / wet,
+            velocity: sum.velocity / wet,
+        })
+    }
+}
+
+/// The surface as the hull wants it, if the sample is sound.
+fn surface(sample: &WaterSample) -> Option<Surface> {
+    let slope = -sample.normal.xz() / sample.normal.y;
+    let sound = sample.height.is_finite() && slope.is_finite() && sample.velocity.is_finite();
+    sound.then_some(Surface { height: sample.height, slope, velocity: sample.velocity })
+}
+
+/// Looks up the water around every floating body, asleep or not: that is how sleepers learn that the water moved.
+pub(super) fn sample_water(
+    mut bodies: Query<(&Floating, &RapierRigidBodyHandle, &RapierContextEntityLink, &mut Hull)>,
+    contexts: Query<&RapierRigidBodySet>,
+    water: WaterQuery,
+) {
+    for (floating, handle, link, mut hull) in &mut bodies {
+        let hull = &mut *hull;
+        let Some(body) = contexts.get(link.0).ok().and_then(|set| set.bodies.get(handle.0)) else { continue };
+        if hull.voxels.is_none() || !body.is_dynamic() || !body.is_enabled() {
+            continue;
+        }
+        let aabb = bounds(&hull.solids, body.position());
+        let height = body.center_of_mass().y;
+        hull.footprint.lowest = aabb.mins.y;
+        hull.footprint.look_up(Rect::from_corners(aabb.mins.xz(), aabb.maxs.xz()), floating.cells_per_axis.min(16) as usize, |at| {
+            water.sample(Vec3::new(at.x, height, at.y)).as_ref().and_then(surface)
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plane(at: Vec2) -> Option<Surface> {
+        Some(Surface { height: 1.0 + 0.5 * at.x - 0.25 * at.y, slope: Vec2::new(0.5, -0.25), velocity: Vec3::X })
+    }
+
+    #[test]
+    fn a_plane_is_interpolated_exactly() {
+        let mut footprint = Footprint::default();
+        footprint.look_up(Rect::new(-1.0, 2.0, 3.0, 4.0), 4, plane);
+        for at in [Vec2::new(-1.0, 2.0), Vec2::new(3.0, 4.0), Vec2::new(0.3, 3.7)] {
+            let (found, exact) = (footprint.at(at).unwrap(), plane(at).unwrap());
+            assert!((found.height - exact.height).abs() < 1e-5);
+            assert!(found.slope.abs_diff_eq(exact.slope, 1e-5) && found.velocity.abs_diff_eq(exact.velocity, 1e-5));
+        }
+    }
+
+    /// Half the footprint over land: dry there, and the wet half undisturbed.
+    #[test]
+    fn a_shore_ends_the_water() {
+        let mut footprint = Footprint::default();
+        footprint.look_up(Rect::new(-1.0, -1.0, 1.0, 1.0), 5, |at| plane(at).filter(|_| at.x < 0.1));
+        assert!(footprint.at(Vec2::new(0.9, 0.0)).is_none());
+        let found = footprint.at(Vec2::new(-0.6, 0.2)).unwrap();
+        assert!((found.height - 0.65).abs() < 1e-5);
+        assert!(!footprint.is_dry());
+        footprint.look_up(Rect::new(0.0, 0.0, 0.0, 0.0), 1, |_| None);
+        assert!(footprint.is_dry() && footprint.at(Vec2::ZERO).is_none());
+    }
+}

@@ -1,0 +1,159 @@
+//! The water's forces, lent to the solver for one step.
+
+use super::{
+    floating::{Buoyancy, Floating},
+    hull::Hull,
+};
+use bevy::prelude::*;
+use bevy_rapier3d::{
+    plugin::{
+        RapierConfiguration, TimestepMode,
+        context::{RapierContextEntityLink, RapierRigidBodySet},
+    },
+    prelude::RapierRigidBodyHandle,
+    rapier::prelude::RigidBody,
+};
+use freshet_hydro::voxels::{Fluid, Load, Motion, Pose, Wrench};
+
+/// Speed of a body's fastest point, m/s, above which a body in the water does not go to sleep. Rapier's own threshold of
+/// 0.05 m/s would freeze what drifts in a slow current, or still bobs by a centimetre.
+const RESTING_SPEED: f32 = 0.01;
+
+/// Change of the water's force, as a share of the body's weight, that wakes it: 2 mm of level under a crate of 20 cm.
+const WAKING_SHARE: f32 = 0.01;
+
+/// Change of the water's velocity, m/s, that wakes a body.
+const WAKING_VELOCITY: f32 = 0.02;
+
+/// The game's own force and torque in the solver, to be restored after the step.
+pub(super) struct Lent {
+    force: Vec3,
+    torque: Vec3,
+}
+
+/// What the water did to a body when it was last awake.
+#[derive(Default)]
+pub(super) struct Rest {
+    force: Vec3,
+    water_velocity: Vec3,
+}
+
+impl Rest {
+    fn of(load: &Load) -> Self {
+        Self { force: load.pressure.force, water_velocity: load.water_velocity }
+    }
+
+    /// Whether `now` would move a sleeping body of `weight` (N).
+    fn is_disturbed(&self, now: &Self, weight: f32) -> bool {
+        self.force.distance(now.force) > WAKING_SHARE * weight
+            || self.water_velocity.distance(now.water_velocity) > WAKING_VELOCITY
+    }
+}
+
+/// Length of the solver's step, s.
+fn step_length(mode: &TimestepMode, time: &Time) -> f32 {
+    match *mode {
+        TimestepMode::Fixed { dt, .. } => dt,
+        TimestepMode::Variable { max_dt, time_scale, .. } => (time.delta_secs() * time_scale).min(max_dt),
+        TimestepMode::Interpolated { dt, time_scale, .. } => dt * time_scale,
+    }
+}
+
+fn motion(body: &RigidBody) -> Motion {
+    Motion { linear: body.linvel(), angular: body.angvel() }
+}
+
+/// Pressure and drag on `hull` where the solver has `body`.
+fn load(hull: &Hull, body: &RigidBody, gravity: Vec3, dt: f32) -> Load {
+    let Some(voxels) = hull.voxels.as_ref().filter(|_| !hull.footprint.is_dry()) else { return Load::default() };
+    let pose = Pose { position: body.translation(), rotation: *body.rotation() };
+    let fluid = Fluid { gravity: (-gravity.y).max(0.0), ..Fluid::default() };
+    let centre = body.center_of_mass();
+    voxels.load(&pose, centre, &motion(body), &fluid, &hull.drag, dt, |at| hull.footprint.at(at))
+}
+
+/// The force for the coming step: [`Load::over_step`] with what else acts on `body`.
+fn force(load: &Load, body: &RigidBody, gravity: Vec3, dt: f32) -> Wrench {
+    let mass = body.mass_properties();
+    let inertia = mass.effective_world_inv_inertia;
+    let inverse_inertia = Mat3::from_cols(
+        Vec3::new(inertia.m11, inertia.m12, inertia.m13),
+        Vec3::new(inertia.m12, inertia.m22, inertia.m23),
+        Vec3::new(inertia.m13, inertia.m23, inertia.m33),
+    );
+    let others = Wrench {
+        force: gravity * (body.gravity_scale() * body.mass()) + body.user_force(),
+        torque: body.user_torque(),
+    };
+    let wrench = load.over_step(&motion(body), mass.effective_inv_mass, inverse_inertia, others, dt);
+    if wrench.is_finite() { wrench } else { Wrench::ZERO }
+}
+
+/// Whether any point of `body` moves faster than [`RESTING_SPEED`].
+fn is_moving(body: &RigidBody, hull: &Hull) -> bool {
+    let length = hull.voxels.as_ref().map_or(0.0, |voxels| voxels.length());
+    body.linvel().length() + body.angvel().length() * length > RESTING_SPEED
+}
+
+/// Computes the forces on all bodies and lends them to the solver; wakes sleepers whose water has changed.
+pub(super) fn lend_forces(
+    mut floating: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Hull, &mut Buoyancy), With<Floating>>,
+    mut contexts: Query<(&mut RapierRigidBodySet, &RapierConfiguration)>,
+    mode: Res<TimestepMode>,
+    time: Res<Time>,
+) {
+    let dt = step_length(&mode, &time);
+    for (handle, link, mut hull, mut buoyancy) in &mut floating {
+        let Ok((mut set, config)) = contexts.get_mut(link.0) else { continue };
+        let Some(body) = set.bodies.get(handle.0) else { continue };
+        let steps = config.physics_pipeline_active && dt > 0.0;
+        if !steps || !body.is_dynamic() || !body.is_enabled() || hull.voxels.is_none() || body.mass() <= 0.0 {
+            continue;
+        }
+
+        let load = load(&hull, body, config.gravity, dt);
+        let rest = Rest::of(&load);
+        if body.is_sleeping() && !hull.rest.is_disturbed(&rest, body.mass() * config.gravity.length()) {
+            continue;
+        }
+        hull.rest = rest;
+        let wrench = force(&load, body, config.gravity, dt);
+        let height = hull.footprint.at(body.center_of_mass().xz()).map(|water| water.height);
+        buoyancy.set_if_neq(Buoyancy {
+            volume: buoyancy.volume,
+            submerged_volume: load.submerged_volume,
+            draft: height.map_or(0.0, |height| (height - hull.footprint.lowest).max(0.0)),
+            force: wrench.force,
+            torque: wrench.torque,
+            water_velocity: load.water_velocity,
+        });
+
+        let wake = body.is_sleeping() || (load.submerged_volume > 0.0 && is_moving(body, &hull));
+        if !wake && wrench == Wrench::ZERO {
+            continue;
+        }
+        let Some(body) = set.bodies.get_mut(handle.0) else { continue };
+        if wake {
+            body.wake_up(true);
+        }
+        hull.lent = Some(Lent { force: body.user_force(), torque: body.user_torque() });
+        body.add_force(wrench.force, false);
+        body.add_torque(wrench.torque, false);
+    }
+}
+
+/// Restores each body's own forces in the solver after the step.
+pub(super) fn take_forces_back(
+    mut floating: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Hull)>,
+    mut contexts: Query<&mut RapierRigidBodySet>,
+) {
+    for (handle, link, mut hull) in &mut floating {
+        let Some(lent) = hull.lent.take() else { continue };
+        let Ok(mut set) = contexts.get_mut(link.0) else { continue };
+        let Some(body) = set.bodies.get_mut(handle.0) else { continue };
+        body.reset_forces(false);
+        body.reset_torques(false);
+        body.add_force(lent.force, false);
+        body.add_torque(lent.torque, false);
+    }
+}

@@ -1,0 +1,72 @@
+//! Rigid bodies of bevy_rapier3d that float (feature `rapier`).
+//!
+//! Add [`Floating`] to a dynamic `RigidBody`; the rest follows. In every fixed step, between Rapier's
+//! `PhysicsSet::SyncBackend` and `PhysicsSet::StepSimulation`, so that shapes, poses and masses are those that the
+//! solver is about to use:
+//!
+//! 1. hulls are built for new bodies, and rebuilt when a collider, a mesh or a scale has changed;
+//! 2. [`WaterSystems::Sample`]: the water is looked up on a lattice over each body's footprint;
+//! 3. [`WaterSystems::Force`]: pressure and drag are lent to the solver, for one step: after it they are taken back,
+//!    so that they never add up and a game's own `ExternalForce` keeps its value and its effect.
+//!
+//! The forces go to the solver's body itself, not through the component `ExternalForce`: writing that one wakes the
+//! body each time, and a body that floats would never sleep.
+//!
+//! # Limits
+//!
+//! * Rapier must run in `FixedUpdate` (`in_fixed_schedule()`); a warning tells when it does not.
+//! * With `substeps` above 1, and while `TimestepMode::Interpolated` catches up, a force holds for all of the step.
+//! * The water does not yet feel the bodies.
+
+mod floating;
+mod force;
+mod footprint;
+mod hull;
+mod return_to;
+mod solid;
+
+pub use floating::{Buoyancy, Floating, Weight};
+pub use return_to::ReturnTo;
+
+use crate::{report::Reported, schedule::WaterSystems};
+use bevy::prelude::*;
+use bevy_rapier3d::plugin::{PhysicsSet, TimestepMode};
+
+/// Makes bodies with [`Floating`] float and [`ReturnTo`] sensors return them. Part of `WaterPlugin`.
+///
+/// Does nothing while Rapier's plugin is absent, and may be added before or after it.
+pub struct BuoyancyPlugin;
+
+impl Plugin for BuoyancyPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Reported>()
+            .add_message::<AssetEvent<Mesh>>()
+            .configure_sets(
+                FixedUpdate,
+                (WaterSystems::Sample, WaterSystems::Force)
+                    .chain()
+                    .after(PhysicsSet::SyncBackend)
+                    .before(PhysicsSet::StepSimulation),
+            )
+            .add_systems(
+                FixedUpdate,
+                (
+                    hull::build_hulls.after(PhysicsSet::SyncBackend).before(WaterSystems::Sample),
+                    footprint::sample_water.in_set(WaterSystems::Sample),
+                    force::lend_forces.in_set(WaterSystems::Force),
+                    (force::take_forces_back, return_to::return_bodies)
+                        .chain()
+                        .after(PhysicsSet::StepSimulation)
+                        .before(PhysicsSet::Writeback),
+                )
+                    .run_if(resource_exists::<TimestepMode>),
+            );
+    }
+
+    fn finish(&self, app: &mut App) {
+        let has_rapier = |schedule: &Schedule| schedule.graph().system_sets.contains(PhysicsSet::StepSimulation);
+        if app.get_schedule(PostUpdate).is_some_and(has_rapier) {
+            warn!("Rapier runs in PostUpdate, the water in FixedUpdate: bodies will not float. Use in_fixed_schedule()");
+        }
+    }
+}

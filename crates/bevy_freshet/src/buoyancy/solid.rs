@@ -1,0 +1,248 @@
+//! Shapes of the physics engine as solids: in or out, how far from the surface, how much volume.
+
+use bevy::{
+    mesh::{Indices, Mesh, VertexAttributeValues},
+    platform::collections::HashMap,
+    prelude::*,
+};
+use bevy_rapier3d::{
+    parry::{
+        mass_properties::details::trimesh_signed_volume_and_center_of_mass,
+        math::Pose,
+        query::PointQuery,
+        shape::{ConvexPolyhedron, Shape, SharedShape, TriMesh, TriMeshFlags, TypedShape},
+    },
+    rapier::prelude::Aabb,
+};
+use freshet_hydro::voxels::{HullError, VoxelHull};
+
+/// Part of a body that has an inside, placed in the body's frame.
+#[derive(Clone)]
+pub(super) struct Solid {
+    pose: Pose,
+    shape: SharedShape,
+}
+
+/// What is wrong with a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub(super) enum Flaw {
+    /// It has no inside; it is left out.
+    #[error("has no volume (half-space, height field, polyline, segment or triangle); it does not float")]
+    NoVolume,
+    /// It is a triangle mesh with a boundary; its convex hull is used.
+    #[error("is an open triangle mesh; it floats as its convex hull")]
+    Open,
+}
+
+impl Solid {
+    /// Appends the solids of `shape` at `pose` to `solids`, compounds taken apart, and passes flaws to `report`.
+    pub(super) fn collect(shape: &SharedShape, pose: Pose, solids: &mut Vec<Self>, report: &mut impl FnMut(Flaw)) {
+        use TypedShape as T;
+        let shape = match shape.as_typed_shape() {
+            T::Compound(compound) => {
+                for (part_pose, part) in compound.shapes() {
+                    Self::collect(part, pose * *part_pose, solids, report);
+                }
+                return;
+            }
+            T::HalfSpace(_) | T::HeightField(_) | T::Polyline(_) | T::Segment(_) | T::Triangle(_) => {
+                report(Flaw::NoVolume);
+                return;
+            }
+            T::TriMesh(mesh) => match Self::close(mesh.vertices().to_vec(), mesh.indices().to_vec(), report) {
+                Some(shape) => shape,
+                None => return,
+            },
+            _ => shape.clone(),
+        };
+        solids.push(Self { pose, shape });
+    }
+
+    /// The solid of a Bevy mesh scaled by `scale`, if it has triangles.
+    pub(super) fn from_mesh(mesh: &Mesh, scale: Vec3, report: &mut impl FnMut(Flaw)) -> Option<Self> {
+        let VertexAttributeValues::Float32x3(positions) = mesh.attribute(Mesh::ATTRIBUTE_POSITION)? else {
+            return None;
+        };
+        let vertices: Vec<Vec3> = positions.iter().map(|p| Vec3::from(*p) * scale).collect();
+        let flat: Vec<u32> = match mesh.indices() {
+            Some(Indices::U16(indices)) => indices.iter().map(|i| u32::from(*i)).collect(),
+            Some(Indices::U32(indices)) => indices.clone(),
+            None => (0..vertices.len() as u32).collect(),
+        };
+        let triangles = flat.as_chunks::<3>().0.to_vec();
+        let shape = Self::close(vertices, triangles, report)?;
+        Some(Self { pose: Pose::IDENTITY, shape })
+    }
+
+    /// A triangle mesh that knows in from out: the mesh itself with outward normals if it is closed, else its hull.
+    fn close(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>, report: &mut impl FnMut(Flaw)) -> Option<SharedShape> {
+        let flags = TriMeshFlags::MERGE_DUPLICATE_VERTICES | TriMeshFlags::DELETE_DEGENERATE_TRIANGLES;
+        if triangles.is_empty() || !vertices.iter().all(|v| v.is_finite()) {
+            report(Flaw::NoVolume);
+            return None;
+        }
+        let mut mesh = TriMesh::with_flags(vertices, triangles, flags).ok()?;
+        if !is_closed(mesh.indices()) {
+            report(Flaw::Open);
+            return SharedShape::convex_hull(mesh.vertices());
+        }
+        if trimesh_signed_volume_and_center_of_mass(mesh.vertices(), mesh.indices()).0 < 0.0 {
+            mesh.reverse();
+        }
+        let mesh = TriMesh::with_flags(mesh.vertices().to_vec(), mesh.indices().to_vec(), TriMeshFlags::ORIENTED);
+        mesh.ok().map(|mesh| SharedShape::new(mesh))
+    }
+
+    /// Bounding box with the body at `body`.
+    fn aabb(&self, body: &Pose) -> Aabb {
+        self.shape.compute_aabb(&(*body * self.pose))
+    }
+
+    /// Signed distance from a point of the body's frame to the surface, m, negative inside.
+    fn distance(&self, point: Vec3) -> f32 {
+        let point = self.pose.inverse_transform_point(point);
+        match self.shape.as_typed_shape() {
+            TypedShape::ConvexPolyhedron(hull) => plane_distance(hull, point),
+            TypedShape::RoundCuboid(round) => projected(&round.inner_shape, point) - round.border_radius,
+            TypedShape::RoundCylinder(round) => projected(&round.inner_shape, point) - round.border_radius,
+            TypedShape::RoundCone(round) => projected(&round.inner_shape, point) - round.border_radius,
+            TypedShape::RoundConvexPolyhedron(round) => {
+                plane_distance(&round.inner_shape, point) - round.border_radius
+            }
+            _ => projected(&*self.shape, point),
+        }
+    }
+
+    /// Exact volume, m³, where Parry knows it: it leaves the border of round shapes out.
+    fn exact_volume(&self) -> Option<f32> {
+        use TypedShape as T;
+        match self.shape.as_typed_shape() {
+            T::RoundCuboid(_) | T::RoundCylinder(_) | T::RoundCone(_) | T::RoundConvexPolyhedron(_) => None,
+            _ => Some(self.shape.mass_properties(1.0).mass()),
+        }
+    }
+}
+
+/// Signed distance by projection on the surface.
+fn projected(shape: &(impl PointQuery + ?Sized), point: Vec3) -> f32 {
+    let distance = shape.project_local_point(point, false).point.distance(point);
+    if shape.contains_local_point(point) { -distance } else { distance }
+}
+
+/// Signed distance to the nearest plane of a face: exact inside, and near enough just outside, where it is asked for.
+fn plane_distance(hull: &ConvexPolyhedron, point: Vec3) -> f32 {
+    let corner_of = |first: u32| hull.points()[hull.vertices_adj_to_face()[first as usize] as usize];
+    hull.faces()
+        .iter()
+        .map(|face| face.normal.dot(point - corner_of(face.first_vertex_or_edge)))
+        .fold(f32::NEG_INFINITY, f32::max)
+}
+
+/// Whether every edge has a triangle on either side, running opposite ways.
+fn is_closed(triangles: &[[u32; 3]]) -> bool {
+    let mut balance = HashMap::<(u32, u32), i32>::default();
+    for [a, b, c] in triangles {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            *balance.entry((*from.min(to), *from.max(to))).or_default() += if from < to { 1 } else { -1 };
+        }
+    }
+    !triangles.is_empty() && balance.values().all(|sum| *sum == 0)
+}
+
+/// Bounding box of all solids with the body at `body`.
+pub(super) fn bounds(solids: &[Solid], body: &Pose) -> Aabb {
+    solids.iter().map(|solid| solid.aabb(body)).fold(Aabb::new_invalid(), |all, aabb| all.merged(&aabb))
+}
+
+/// Cuts the union of `solids` into voxels. Volumes are exact where Parry knows them; where solids overlap, the share
+/// that counts once is taken from the samples.
+pub(super) fn voxelize(solids: &[Solid], cells_per_axis: u32) -> Result<VoxelHull, HullError> {
+    let bounds = bounds(solids, &Pose::IDENTITY);
+    let (mut in_any, mut in_each) = (0_u32, 0_u32);
+    let hull = VoxelHull::new([bounds.mins, bounds.maxs], cells_per_axis as usize, |point| {
+        let (inside, distance) = solids.iter().fold((0, f32::INFINITY), |(inside, nearest), solid| {
+            let distance = solid.distance(point);
+            (inside + u32::from(distance < 0.0), nearest.min(distance))
+        });
+        in_any += inside.min(1);
+        in_each += inside;
+        distance
+    })?;
+    let exact: Option<f32> = solids.iter().map(Solid::exact_volume).sum();
+    match exact {
+        Some(volume) if in_each > 0 => hull.with_volume(volume * in_any as f32 / in_each as f32),
+        _ => Ok(hull),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::math::primitives::{Cuboid, Sphere};
+    use core::f32::consts::PI;
+
+    fn hull_of(shape: SharedShape) -> (VoxelHull, Vec<Flaw>) {
+        let (mut solids, mut flaws) = (Vec::new(), Vec::new());
+        Solid::collect(&shape, Pose::IDENTITY, &mut solids, &mut |flaw| flaws.push(flaw));
+        (voxelize(&solids, 4).unwrap(), flaws)
+    }
+
+    /// Scaled shapes of known volume; sampled ones within 3 %.
+    #[test]
+    fn shapes_have_their_volume() {
+        let corners: Vec<Vec3> = (0..8).map(|i| Vec3::from([0, 1, 2].map(|axis| f32::from(i >> axis & 1 == 1)))).collect();
+        let cases = [
+            (SharedShape::ball(0.5), PI / 6.0),
+            (SharedShape::cuboid(0.5, 1.0, 2.0), 8.0),
+            (SharedShape::cylinder(1.0, 0.5), PI / 2.0),
+            (SharedShape::cone(1.0, 0.5), PI / 6.0),
+            (SharedShape::capsule_y(0.5, 0.5), PI / 4.0 + PI / 6.0),
+            (SharedShape::convex_hull(&corners).unwrap(), 1.0),
+            (SharedShape::round_cuboid(0.4, 0.4, 0.4, 0.1), 0.512 + 6.0 * 0.064 + 3.0 * 0.8 * PI * 0.01 + PI / 750.0),
+        ];
+        for (shape, volume) in cases {
+            let (hull, flaws) = hull_of(shape);
+            assert!((hull.volume() / volume - 1.0).abs() < 0.03, "{} instead of {volume}", hull.volume());
+            assert!(flaws.is_empty());
+            let cells: f32 = hull.cells().iter().map(|cell| cell.volume).sum();
+            assert!((cells / hull.volume() - 1.0).abs() < 1e-4);
+        }
+    }
+
+    /// Two cubes that overlap by half count 1.5 m³; a plank thinner than a sample keeps its exact volume.
+    #[test]
+    fn compounds_count_overlap_once() {
+        let cube = SharedShape::cuboid(0.5, 0.5, 0.5);
+        let at = |x: f32| Pose::from_translation(Vec3::X * x);
+        let (hull, _) = hull_of(SharedShape::compound(vec![(at(0.0), cube.clone()), (at(0.5), cube.clone())]));
+        assert!((hull.volume() - 1.5).abs() < 0.06, "{}", hull.volume());
+        let plank = SharedShape::cuboid(0.02, 0.5, 0.5);
+        let (hull, _) = hull_of(SharedShape::compound(vec![(at(0.0), cube), (at(3.0), plank)]));
+        assert!((hull.volume() - 1.04).abs() < 1e-4, "{}", hull.volume());
+    }
+
+    #[test]
+    fn meshes_are_solid_if_closed() {
+        let mut flaws = Vec::new();
+        let sphere = Sphere::new(1.0).mesh().ico(4).unwrap();
+        let solid = Solid::from_mesh(&sphere, Vec3::new(1.0, 2.0, 1.0), &mut |flaw| flaws.push(flaw)).unwrap();
+        let hull = voxelize(&[solid], 4).unwrap();
+        assert!((hull.volume() / (8.0 / 3.0 * PI) - 1.0).abs() < 0.02, "{}", hull.volume());
+        let mirrored = Solid::from_mesh(&Cuboid::default().into(), Vec3::new(-1.0, 1.0, 1.0), &mut |flaw| flaws.push(flaw));
+        assert!((voxelize(&[mirrored.unwrap()], 4).unwrap().volume() - 1.0).abs() < 1e-4);
+        assert!(flaws.is_empty());
+    }
+
+    #[test]
+    fn open_and_hollow_shapes_are_named() {
+        let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+        let open = SharedShape::trimesh(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2]]).unwrap();
+        let (hull, flaws) = hull_of(open);
+        assert_eq!(flaws, [Flaw::Open]);
+        assert!((hull.volume() - 1.0 / 6.0).abs() < 1e-4);
+        let (mut solids, mut flaws) = (Vec::new(), Vec::new());
+        Solid::collect(&SharedShape::halfspace(Vec3::Y), Pose::IDENTITY, &mut solids, &mut |flaw| flaws.push(flaw));
+        assert!(solids.is_empty());
+        assert_eq!(flaws, [Flaw::NoVolume]);
+    }
+}
