@@ -8,7 +8,7 @@ mod waves;
 pub use bed::{WaterBed, WaterBedError};
 pub use flow::WaterFlow;
 pub use optics::{Fresnel, WaterOptics};
-pub(crate) use resolved::{ResolvedBed, ResolvedWater, yaw_frame};
+pub(crate) use resolved::ResolvedWater;
 pub use waves::{WaterWaves, Wave};
 
 use crate::{

@@ -9,7 +9,7 @@ use crate::{
     surface::{ViewerData, Viewers},
 };
 use bevy::{
-    camera::{CameraProjection, Hdr, RenderTarget, primitives::Aabb},
+    camera::{Hdr, RenderTarget, primitives::Aabb},
     core_pipeline::tonemapping::Tonemapping,
     light::cluster::ClusterConfig,
     math::Affine3A,

@@ -16,7 +16,7 @@ pub use viewer::NoWater;
 
 use crate::schedule::WaterSystems;
 use bevy::{
-    asset::{embedded_asset, load_internal_asset},
+    asset::embedded_asset,
     camera::{CameraUpdateSystems, visibility::VisibilitySystems},
     prelude::*,
     render::RenderApp,
@@ -116,6 +116,7 @@ impl Plugin for SurfacePlugin {
             .add_systems(
                 PostUpdate,
                 (
+                    viewer::report_missing_camera,
                     (viewer::require_depth, sync::sync_surfaces).chain().in_set(WaterSystems::Present),
                     write::write_surfaces
                         .in_set(WaterSystems::Present)

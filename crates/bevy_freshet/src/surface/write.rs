@@ -14,7 +14,6 @@ use crate::{
 use bevy::{
     asset::RenderAssetUsages,
     image::Image,
-    math::ops,
     prelude::*,
     render::{
         render_resource::{Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension},
