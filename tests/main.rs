@@ -4,6 +4,8 @@
 
 mod stage;
 
+#[cfg(feature = "rapier")]
+mod buoyancy;
 mod optics;
 mod reflection;
 mod robustness;

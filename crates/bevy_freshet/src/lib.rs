@@ -7,6 +7,8 @@
 
 pub mod bed;
 pub mod body;
+#[cfg(feature = "rapier")]
+pub mod buoyancy;
 pub mod query;
 pub mod reflection;
 mod report;
@@ -17,6 +19,8 @@ pub use schedule::WaterSystems;
 
 /// What an app with water usually needs.
 pub mod prelude {
+    #[cfg(feature = "rapier")]
+    pub use crate::buoyancy::{Buoyancy, Floating, ReturnTo, Weight};
     pub use crate::{
         WaterPlugin, WaterSystems,
         bed::BedShading,
@@ -39,6 +43,8 @@ pub struct WaterPlugin;
 impl Plugin for WaterPlugin {
     fn build(&self, app: &mut App) {
         app.add_plugins(body::BodyPlugin);
+        #[cfg(feature = "rapier")]
+        app.add_plugins(buoyancy::BuoyancyPlugin);
         if app.get_sub_app(RenderApp).is_some() {
             app.add_plugins((surface::SurfacePlugin, reflection::ReflectionPlugin, bed::BedPlugin));
         }
