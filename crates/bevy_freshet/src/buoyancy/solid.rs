@@ -10,7 +10,7 @@ use bevy_rapier3d::parry::{
     mass_properties::details::trimesh_signed_volume_and_center_of_mass,
     math::Pose,
     query::PointQuery,
-    shape::{ConvexPolyhedron, Shape, SharedShape, TriMesh, TriMeshFlags, TypedShape},
+    shape::{ConvexPolyhedron, SharedShape, TriMesh, TriMeshFlags, TypedShape},
 };
 use freshet_hydro::voxels::{HullError, VoxelHull};
 
@@ -221,7 +221,7 @@ mod tests {
     #[test]
     fn meshes_are_solid_if_closed() {
         let mut flaws = Vec::new();
-        let sphere = Sphere::new(1.0).mesh().ico(4).unwrap();
+        let sphere = Sphere::new(1.0).mesh().ico(9).unwrap();
         let solid = Solid::from_mesh(&sphere, Vec3::new(1.0, 2.0, 1.0), &mut |flaw| flaws.push(flaw)).unwrap();
         let hull = voxelize(&[solid], 4).unwrap();
         assert!((hull.volume() / (8.0 / 3.0 * PI) - 1.0).abs() < 0.02, "{}", hull.volume());
