@@ -9,10 +9,11 @@ pub enum WaterSystems {
     /// Runs in `FixedFirst` for the fixed clock, and again in `RunFixedMainLoop` after the fixed steps and in
     /// `PostUpdate` after transform propagation for the virtual clock.
     Resolve,
-    /// Floating bodies look up heights and velocities. In `FixedUpdate`.
+    /// Floating bodies look up heights and velocities. In `FixedUpdate`, after Rapier's `PhysicsSet::SyncBackend`, so
+    /// that poses and shapes are those of the coming step.
     Sample,
     /// Forces of the water are handed to the physics engine. In `FixedUpdate`, after [`WaterSystems::Sample`] and before
-    /// Rapier's `PhysicsSet::SyncBackend`.
+    /// Rapier's `PhysicsSet::StepSimulation`.
     Force,
     /// Surfaces, mirrors and their GPU data follow waters and cameras. In `PostUpdate`, after
     /// [`WaterSystems::Resolve`] and before Bevy's `CameraUpdateSystems` and `VisibilitySystems::UpdateFrusta`.

@@ -1,10 +1,6 @@
 //! The water around a body, looked up once a step on a lattice over its footprint.
 
-use super::{
-    floating::Floating,
-    hull::Hull,
-    solid::bounds,
-};
+use super::{floating::Floating, hull::Hull, solid::bounds};
 use crate::query::{WaterQuery, WaterSample};
 use bevy::prelude::*;
 use bevy_rapier3d::{
@@ -49,7 +45,8 @@ impl Footprint {
     /// and nothing if they are the smaller part.
     pub(super) fn at(&self, place: Vec2) -> Option<Surface> {
         let cells = (self.places - 1) as f32;
-        let at = ((place - self.min) / self.size.max(Vec2::splat(f32::MIN_POSITIVE))).clamp(Vec2::ZERO, Vec2::ONE) * cells;
+        let at =
+            ((place - self.min) / self.size.max(Vec2::splat(f32::MIN_POSITIVE))).clamp(Vec2::ZERO, Vec2::ONE) * cells;
         let first = at.floor().min(Vec2::splat(cells - 1.0));
         let part = at - first;
         let corner = first.y as usize * self.places + first.x as usize;
@@ -69,11 +66,7 @@ impl Footprint {
                 sum.velocity += weight * water.velocity;
             }
         }
-        (wet >= 0.5).then(|| Surface {
-            height: sum.height / wet,
-            slope: sum.slope / wet,
-            velocity: sum.velocity / wet,
-        })
+        (wet >= 0.5).then(|| Surface { height: sum.height / wet, slope: sum.slope / wet, velocity: sum.velocity / wet })
     }
 }
 
@@ -99,9 +92,11 @@ pub(super) fn sample_water(
         let aabb = bounds(&hull.solids, body.position());
         let height = body.center_of_mass().y;
         hull.footprint.lowest = aabb.mins.y;
-        hull.footprint.look_up(Rect::from_corners(aabb.mins.xz(), aabb.maxs.xz()), floating.cells_per_axis.min(16) as usize, |at| {
-            water.sample(Vec3::new(at.x, height, at.y)).as_ref().and_then(surface)
-        });
+        hull.footprint.look_up(
+            Rect::from_corners(aabb.mins.xz(), aabb.maxs.xz()),
+            floating.cells_per_axis.min(16) as usize,
+            |at| water.sample(Vec3::new(at.x, height, at.y)).as_ref().and_then(surface),
+        );
     }
 }
 

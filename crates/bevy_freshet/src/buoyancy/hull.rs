@@ -9,11 +9,7 @@ use super::{
 use crate::report::Reported;
 use bevy::{asset::AssetId, prelude::*};
 use bevy_rapier3d::{
-    parry::{
-        mass_properties::MassProperties,
-        math::Pose,
-        shape::SharedShape,
-    },
+    parry::{mass_properties::MassProperties, math::Pose, shape::SharedShape},
     plugin::context::{RapierContextColliders, RapierContextEntityLink, RapierRigidBodySet},
     prelude::{MassModifiedEvent, RapierRigidBodyHandle},
     rapier::prelude::{ColliderSet, RigidBody},
@@ -111,7 +107,8 @@ impl Hull {
         if self.solids.is_empty() {
             return Err("has neither a collider nor a mesh with a volume; the body does not float".into());
         }
-        let hull = voxelize(&self.solids, cells_per_axis).map_err(|error| format!("{error}; the body does not float"))?;
+        let hull =
+            voxelize(&self.solids, cells_per_axis).map_err(|error| format!("{error}; the body does not float"))?;
         self.voxels = Some(hull);
         Ok(())
     }

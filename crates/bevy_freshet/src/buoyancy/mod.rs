@@ -19,8 +19,8 @@
 //! * The water does not yet feel the bodies.
 
 mod floating;
-mod force;
 mod footprint;
+mod force;
 mod hull;
 mod return_to;
 mod solid;
@@ -66,7 +66,9 @@ impl Plugin for BuoyancyPlugin {
     fn finish(&self, app: &mut App) {
         let has_rapier = |schedule: &Schedule| schedule.graph().system_sets.contains(PhysicsSet::StepSimulation);
         if app.get_schedule(PostUpdate).is_some_and(has_rapier) {
-            warn!("Rapier runs in PostUpdate, the water in FixedUpdate: bodies will not float. Use in_fixed_schedule()");
+            warn!(
+                "Rapier runs in PostUpdate, the water in FixedUpdate: bodies will not float. Use in_fixed_schedule()"
+            );
         }
     }
 }

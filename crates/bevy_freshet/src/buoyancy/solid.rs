@@ -5,14 +5,12 @@ use bevy::{
     platform::collections::HashMap,
     prelude::*,
 };
-use bevy_rapier3d::{
-    parry::{
-        mass_properties::details::trimesh_signed_volume_and_center_of_mass,
-        math::Pose,
-        query::PointQuery,
-        shape::{ConvexPolyhedron, Shape, SharedShape, TriMesh, TriMeshFlags, TypedShape},
-    },
-    rapier::prelude::Aabb,
+use bevy_rapier3d::parry::{
+    bounding_volume::{Aabb, BoundingVolume},
+    mass_properties::details::trimesh_signed_volume_and_center_of_mass,
+    math::Pose,
+    query::PointQuery,
+    shape::{ConvexPolyhedron, SharedShape, TriMesh, TriMeshFlags, TypedShape},
 };
 use freshet_hydro::voxels::{HullError, VoxelHull};
 
@@ -90,7 +88,7 @@ impl Solid {
             mesh.reverse();
         }
         let mesh = TriMesh::with_flags(mesh.vertices().to_vec(), mesh.indices().to_vec(), TriMeshFlags::ORIENTED);
-        mesh.ok().map(|mesh| SharedShape::new(mesh))
+        mesh.ok().map(SharedShape::new)
     }
 
     /// Bounding box with the body at `body`.
@@ -106,9 +104,7 @@ impl Solid {
             TypedShape::RoundCuboid(round) => projected(&round.inner_shape, point) - round.border_radius,
             TypedShape::RoundCylinder(round) => projected(&round.inner_shape, point) - round.border_radius,
             TypedShape::RoundCone(round) => projected(&round.inner_shape, point) - round.border_radius,
-            TypedShape::RoundConvexPolyhedron(round) => {
-                plane_distance(&round.inner_shape, point) - round.border_radius
-            }
+            TypedShape::RoundConvexPolyhedron(round) => plane_distance(&round.inner_shape, point) - round.border_radius,
             _ => projected(&*self.shape, point),
         }
     }
@@ -190,7 +186,8 @@ mod tests {
     /// Scaled shapes of known volume; sampled ones within 3 %.
     #[test]
     fn shapes_have_their_volume() {
-        let corners: Vec<Vec3> = (0..8).map(|i| Vec3::from([0, 1, 2].map(|axis| f32::from(i >> axis & 1 == 1)))).collect();
+        let corners: Vec<Vec3> =
+            (0..8).map(|i| Vec3::from([0, 1, 2].map(|axis| f32::from(i >> axis & 1 == 1)))).collect();
         let cases = [
             (SharedShape::ball(0.5), PI / 6.0),
             (SharedShape::cuboid(0.5, 1.0, 2.0), 8.0),
@@ -224,11 +221,12 @@ mod tests {
     #[test]
     fn meshes_are_solid_if_closed() {
         let mut flaws = Vec::new();
-        let sphere = Sphere::new(1.0).mesh().ico(4).unwrap();
+        let sphere = Sphere::new(1.0).mesh().ico(9).unwrap();
         let solid = Solid::from_mesh(&sphere, Vec3::new(1.0, 2.0, 1.0), &mut |flaw| flaws.push(flaw)).unwrap();
         let hull = voxelize(&[solid], 4).unwrap();
         assert!((hull.volume() / (8.0 / 3.0 * PI) - 1.0).abs() < 0.02, "{}", hull.volume());
-        let mirrored = Solid::from_mesh(&Cuboid::default().into(), Vec3::new(-1.0, 1.0, 1.0), &mut |flaw| flaws.push(flaw));
+        let mirrored =
+            Solid::from_mesh(&Cuboid::default().into(), Vec3::new(-1.0, 1.0, 1.0), &mut |flaw| flaws.push(flaw));
         assert!((voxelize(&[mirrored.unwrap()], 4).unwrap().volume() - 1.0).abs() < 1e-4);
         assert!(flaws.is_empty());
     }
