@@ -16,6 +16,8 @@
 //!
 //! * Rapier must run in `FixedUpdate` (`in_fixed_schedule()`); a warning tells when it does not.
 //! * With `substeps` above 1, and while `TimestepMode::Interpolated` catches up, a force holds for all of the step.
+//! * bevy_rapier 0.36 writes back a wrong `Transform` for bodies below a *rotated* parent (its `writeback_rigid_bodies`
+//!   scales after rotating); moved and scaled parents are right, and the solver's own pose always is.
 //! * The water does not yet feel the bodies.
 
 mod floating;
