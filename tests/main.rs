@@ -1,5 +1,4 @@
 //! Integration tests of the plugin: one binary, so that Bevy is linked once. A module per theme.
-#![expect(missing_docs, reason = "tests say what they check in their names")]
 #![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
 mod stage;

@@ -140,32 +140,28 @@ fn dispersion_separates_red_and_blue() {
 #[test]
 fn a_box_in_front_of_the_water_leaves_no_ghost() {
     let mut stage = Stage::new();
-    let (water, waves, surface, optics) = still_water(Vec2::splat(60.0));
+    let (water, _, surface, optics) = still_water(Vec2::splat(60.0));
     // Strongly bent: waves move the refraction by many pixels.
-    let waves_ = WaterWaves::wind(6.0, 500.0, Vec2::X);
-    drop(waves);
+    let waves = WaterWaves::wind(6.0, 500.0, Vec2::X);
     let surface = WaterSurface { ripples: 0.3, ..surface };
-    stage.spawn((water, waves_, surface, WaterOptics { reflectivity: 0.0, ..optics }));
+    stage.spawn((water, waves, surface, WaterOptics { reflectivity: 0.0, ..optics }));
     let white = Plane3d::default().mesh().size(200.0, 200.0);
     stage.paint(white, LinearRgba::GREEN, Transform::from_xyz(0.0, -3.0, 0.0));
     let pose = Transform::from_xyz(0.0, 3.0, 8.0).looking_at(vec3(0.0, 0.0, 0.0), Vec3::Y);
     let camera = stage.camera(PerspectiveProjection::default(), pose);
     // Between camera and water, well above it.
-    let red = stage.paint(
+    stage.paint(
         Cuboid::from_length(0.6),
         LinearRgba::RED,
         Transform::from_xyz(0.0, 2.0, 5.0).with_rotation(Quat::from_rotation_y(0.4)),
     );
-    let with = stage.picture(camera);
-    stage.app.world_mut().despawn(red);
-    let without = stage.picture(camera);
+    let picture = stage.picture(camera);
     let mut red_pixels = 0;
-    for ((pixel, with), (_, without)) in with.pixels().zip(without.pixels()) {
-        if with.x > 0.5 {
+    for (pixel, color) in picture.pixels() {
+        if color.x > 0.5 {
             red_pixels += 1;
         } else {
-            assert!(with.x < 1e-3, "red bleeds into the water at {pixel}: {with}");
-            let _ = without;
+            assert!(color.x < 1e-3, "red bleeds into the water at {pixel}: {color}");
         }
     }
     assert!(red_pixels > 200, "the box is in the picture");
@@ -197,7 +193,7 @@ fn fog_hides_water_and_land_alike() {
             let (land, water) = (picture.at(40, y).x, picture.at(SIZE.x - 41, y).x);
             assert!((land - water).abs() < 0.01, "row {y}: land {land}, water {water}");
         }
-        assert!(picture.at(40, SIZE.y / 2 + 5).x > 0.2, "there is fog");
+        assert!(picture.at(40, SIZE.y / 2 + 5).x > 0.1, "there is fog");
     }
 }
 

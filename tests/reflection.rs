@@ -151,10 +151,8 @@ fn split_screen_mirrors_in_its_own_half() {
     let picture = stage.picture(camera);
     let (low, high) = bounds(&picture, 0).expect("the red box is mirrored");
     let (expected_low, expected_high) = expected(&stage, camera, RED_AT);
-    // `world_to_viewport` counts from the viewport's own corner.
-    let offset = vec2(SIZE.x as f32 / 2.0, 0.0);
-    let error = (low - offset - expected_low).abs().max((high - offset - expected_high).abs()).max_element();
-    assert!(error <= 1.5, "{low}…{high}, expected {expected_low}…{expected_high} + {offset}");
+    let error = (low - expected_low).abs().max((high - expected_high).abs()).max_element();
+    assert!(error <= 1.5, "{low}…{high}, expected {expected_low}…{expected_high}");
 }
 
 #[test]

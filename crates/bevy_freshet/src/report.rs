@@ -49,6 +49,6 @@ impl Reported {
 }
 
 /// Forgets complaints about entities that are gone, so that a reused identifier is heard again.
-pub(crate) fn forget_despawned(mut reported: ResMut<Reported>, entities: &bevy::ecs::entity::Entities) {
+pub(crate) fn forget_despawned(mut reported: ResMut<Reported>, entities: Query<()>) {
     reported.0.retain(|entity, _| entities.contains(*entity));
 }

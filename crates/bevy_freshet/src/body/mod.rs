@@ -17,7 +17,7 @@ use crate::{
     schedule::WaterSystems,
     surface::WaterSurface,
 };
-use bevy::{app::RunFixedMainLoopSystems, prelude::*};
+use bevy::{app::RunFixedMainLoopSystems, ecs::message::MessageUpdateSystems, prelude::*};
 
 /// A rectangle of water. Its entity's `Transform` places the still surface: translation and rotation about y count,
 /// scale and tilt do not (water is level).
@@ -52,7 +52,7 @@ pub(crate) struct BodyPlugin;
 impl Plugin for BodyPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Reported>()
-            .add_systems(First, forget_despawned)
+            .add_systems(First, forget_despawned.after(MessageUpdateSystems))
             .add_systems(FixedFirst, resolved::resolve_waters.in_set(WaterSystems::Resolve))
             .add_systems(
                 RunFixedMainLoop,

@@ -185,9 +185,10 @@ fn draw(commands: &mut Commands, mirror: &mut Mirror, viewer: &ViewerData, wante
         global,
         viewer.exposure.copied().unwrap_or_default(),
     ));
-    // Its clip plane confuses the light clusters of an orthographic mirror, which goes without point lights.
+    // Clusters in depth follow the near plane, which the oblique one of an orthographic mirror is not: one cluster has
+    // all point lights.
     if matches!(projection, Projection::Custom(_)) {
-        camera.insert(ClusterConfig::None);
+        camera.insert(ClusterConfig::Single);
     }
     camera.insert(projection);
     viewer.insert_lighting(&mut camera);

@@ -40,7 +40,7 @@ fn trace(at: vec3<f32>, at_depth: f32, straight: scene::Behind, pixel: vec2<f32>
         found = guess;
     }
     let depth = max(at.y - end.position.y, 0.0);
-    return Hit(found, distance(at, end.position), depth, end.position);
+    return Hit(found, depth * slant, depth, end.position);
 }
 
 // Colour of one ray under water.

@@ -45,7 +45,8 @@ fn pixel_of(position: vec3<f32>) -> vec2<f32> {
 
 // Linear radiance, as drawn, of the opaque scene at a pixel of the target.
 fn color_behind(pixel: vec2<f32>) -> vec3<f32> {
-    let uv = pixel / vec2<f32>(textureDimensions(view_bindings::view_transmission_texture));
+    // The texel whose depth `behind` tells: interpolation would mix in what stands beside it, in front of the water.
+    let uv = (floor(pixel) + 0.5) / vec2<f32>(textureDimensions(view_bindings::view_transmission_texture));
     var color =
         textureSampleLevel(view_bindings::view_transmission_texture, view_bindings::view_transmission_sampler, uv, 0.0);
 #ifdef TONEMAP_IN_SHADER
