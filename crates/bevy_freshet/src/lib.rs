@@ -10,6 +10,7 @@ pub mod query;
 pub mod reflection;
 mod report;
 mod schedule;
+pub mod sky;
 pub mod surface;
 
 pub use schedule::WaterSystems;
