@@ -69,6 +69,15 @@ fn main() -> Result<AppExit, Box<dyn std::error::Error>> {
     if options.out.is_some() {
         app.add_systems(Last, print_table);
     }
+    if let Ok(off) = std::env::var("OFF") {
+        app.add_systems(Update, move |mut c: Commands, w: Query<Entity, With<Water>>, b: Query<Entity, With<BedShading>>, mut r: Query<&mut WaterReflection>, mut l: Query<&mut DirectionalLight>, n: Query<(Entity, &Name)>| {
+            if off.contains("banks") { for (e, n) in &n { if n.as_str() == "Banks" { c.entity(e).despawn(); } } }
+            if off.contains("water") { for e in &w { c.entity(e).despawn(); } }
+            if off.contains("mirror") { for mut x in &mut r { x.planar = false; } }
+            if off.contains("shadow") { for mut x in &mut l { x.shadow_maps_enabled = false; } }
+            if off.contains("bed") { for e in &b { c.entity(e).despawn(); } }
+        });
+    }
     Ok(common::run(app))
 }
 

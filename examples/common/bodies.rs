@@ -68,7 +68,7 @@ impl Bodies {
 
     /// The `i`-th of a mixed lot, at `pose`.
     pub fn spawn(&self, commands: &mut Commands, i: usize, pose: Transform) {
-        let mut body = commands.spawn((RigidBody::Dynamic, pose, Visibility::default()));
+        let mut body = commands.spawn((RigidBody::Dynamic, Velocity::default(), pose, Visibility::default()));
         match i % 4 {
             0 | 2 => body.insert((
                 Name::new(format!("ball {i}")),
@@ -105,6 +105,7 @@ impl Bodies {
             .spawn((
                 Name::new("boat"),
                 RigidBody::Dynamic,
+                Velocity::default(),
                 collider,
                 Floating::with_density(260.0),
                 Mesh3d(self.hull.clone()),

@@ -15,7 +15,10 @@ use bevy::{
     winit::WinitPlugin,
 };
 use clap::Parser;
-use std::{path::PathBuf, time::Duration};
+use std::{
+    path::PathBuf,
+    time::{Duration, Instant},
+};
 
 /// The command line of every example.
 #[derive(Parser, Resource, Clone, Debug)]
@@ -116,8 +119,16 @@ pub fn run(mut app: App) -> AppExit {
     app.cleanup();
     warm_up(&mut app);
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(FRAME)));
-    for _ in 0..options.frames {
-        app.update();
+    let mut milliseconds: Vec<f64> = (0..options.frames)
+        .map(|_| {
+            let start = Instant::now();
+            app.update();
+            start.elapsed().as_secs_f64() * 1e3
+        })
+        .collect();
+    milliseconds.sort_by(f64::total_cmp);
+    if let Some(median) = milliseconds.get(milliseconds.len() / 2) {
+        println!("{} frames of {}x{}, median {median:.1} ms", options.frames, options.size.x, options.size.y);
     }
     match take_picture(&mut app, out) {
         Ok(()) => AppExit::Success,

@@ -88,10 +88,10 @@ fn shade_beds(
         if let Some(mut material) = materials.get_mut(&material) {
             material.extension.bed = uniform;
         }
-        commands.entity(entity).insert(BedDrawing(material.clone()));
+        commands.entity(entity).try_insert(BedDrawing(material.clone()));
         if bed.is_changed() {
             for (chunk, _) in chunks.iter().filter(|(_, parent)| parent.get() == entity) {
-                commands.entity(chunk).despawn();
+                commands.entity(chunk).try_despawn();
             }
             spawn_chunks(&mut commands, &mut meshes, entity, &bed, &material);
         }

@@ -111,7 +111,7 @@ pub(crate) fn update_mirrors(
     mirrors.0.retain(|key, mirror| {
         let keep = seen.contains_key(key);
         if !keep {
-            commands.entity(mirror.entity).despawn();
+            commands.entity(mirror.entity).try_despawn();
         }
         keep
     });
@@ -162,14 +162,14 @@ fn draw(commands: &mut Commands, mirror: &mut Mirror, viewer: &ViewerData, wante
     let plane = clip_plane(&global, wanted.level - wanted.settings.clip_offset);
     let Some(projection) = mirrored(viewer.projection, plane, aspect).filter(|_| due) else {
         let order = viewer.camera.order - 1;
-        commands.entity(mirror.entity).insert(Camera { is_active: false, order, ..default() });
+        commands.entity(mirror.entity).try_insert(Camera { is_active: false, order, ..default() });
         return;
     };
     mirror.age = 0;
     mirror.clip_from_world = Some(projection.get_clip_from_view() * global.to_matrix().inverse());
     let layers = wanted.settings.layers.clone().or_else(|| viewer.layers.cloned()).unwrap_or_default();
     let mut camera = commands.entity(mirror.entity);
-    camera.insert((
+    camera.try_insert((
         MirrorCamera { viewer: viewer.entity, level: wanted.level },
         Camera3d::default(),
         Camera {
@@ -188,9 +188,9 @@ fn draw(commands: &mut Commands, mirror: &mut Mirror, viewer: &ViewerData, wante
     // Clusters in depth follow the near plane, which the oblique one of an orthographic mirror is not: one cluster has
     // all point lights.
     if matches!(projection, Projection::Custom(_)) {
-        camera.insert(ClusterConfig::Single);
+        camera.try_insert(ClusterConfig::Single);
     }
-    camera.insert(projection);
+    camera.try_insert(projection);
     viewer.insert_lighting(&mut camera);
 }
 

@@ -161,7 +161,7 @@ pub(super) fn sync_surfaces(
     for (entity, surface, mut shape, mut mesh) in &mut surfaces {
         let water = waters.get(surface.water).ok().filter(|_| missing.remove(surface));
         let Some((water, settings, resolved, visibility, layers)) = water else {
-            commands.entity(entity).despawn();
+            commands.entity(entity).try_despawn();
             continue;
         };
         let wanted = SurfaceShape::new(water, settings, resolved, &mut reported);
@@ -171,7 +171,7 @@ pub(super) fn sync_surfaces(
         }
         let shown = visibility.get() && resolved.half_size != Vec2::ZERO;
         let visible = if shown { Visibility::Visible } else { Visibility::Hidden };
-        commands.entity(entity).insert((visible, place(resolved), layers.cloned().unwrap_or_default()));
+        commands.entity(entity).try_insert((visible, place(resolved), layers.cloned().unwrap_or_default()));
     }
     for surface in missing {
         let Ok((water, settings, resolved, ..)) = waters.get(surface.water) else { continue };

@@ -54,7 +54,7 @@ impl ViewerData<'_> {
     pub fn insert_lighting(&self, mirror: &mut EntityCommands) {
         fn copy<C: Component + Clone>(from: Option<&C>, to: &mut EntityCommands) {
             match from {
-                Some(component) => to.insert(component.clone()),
+                Some(component) => to.try_insert(component.clone()),
                 None => to.remove::<C>(),
             };
         }
@@ -107,7 +107,7 @@ pub(super) fn require_depth(
 ) {
     if !waters.is_empty() {
         for camera in &cameras {
-            commands.entity(camera).insert(DepthPrepass);
+            commands.entity(camera).try_insert(DepthPrepass);
         }
     }
 }
