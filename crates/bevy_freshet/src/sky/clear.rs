@@ -226,8 +226,9 @@ impl Dusk {
         let gold = Vec3::new(0.85, 0.46, 0.19) * (height(8.0) * ops::powf(facing, 3.0));
         let violet = Vec3::new(0.30, 0.21, 0.36) * (height(20.0) * facing * facing);
         let offset = (altitude - 5.0 - 1.6 * self.depth) / 5.0;
-        let belt = Vec3::new(0.34, 0.17, 0.20)
-            * (ops::exp(-offset * offset) * (1.0 - facing) * (1.0 - night));
+        let pink = 1.0 - smoothstep(4.0, 8.0, self.depth);
+        let belt =
+            Vec3::new(0.34, 0.17, 0.20) * (ops::exp(-offset * offset) * (1.0 - facing) * pink);
         let shadow =
             1.0 - 0.35 * (1.0 - facing) * (1.0 - smoothstep(0.0, 4.0 + 1.6 * self.depth, altitude));
         let moonless = Vec3::new(0.40, 0.52, 0.95) * (1.0 + 0.5 * height(20.0));

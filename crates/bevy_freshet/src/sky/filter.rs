@@ -77,7 +77,7 @@ fn blurred(pyramid: &[Cubemap], level: usize, roughness: f32) -> Cubemap {
 /// Importance samples of GGX seen head-on (Karis 2013, *Real Shading in Unreal Engine 4*), each read from a blurred level
 /// so that few suffice (Křivánek & Colbert 2008, *Real-Time Shading with Filtered Importance Sampling*).
 fn lobe(pyramid: &[Cubemap], level: usize, roughness: f32) -> Vec<Sample> {
-    let count = 16 + 8 * level as u32;
+    let count = 24 + 8 * level as u32;
     let alpha2 = ops::powf(roughness, 4.0);
     let texel = 4.0 * PI / (6 * pyramid[0].size * pyramid[0].size) as f32;
     let sample = |i: u32| {
@@ -93,7 +93,8 @@ fn lobe(pyramid: &[Cubemap], level: usize, roughness: f32) -> Vec<Sample> {
         let spread = 1.0 + (alpha2 - 1.0) * cos2;
         let density = alpha2 / (PI * spread * spread) / 4.0;
         let share = 1.0 / (count as f32 * density.max(1e-6));
-        let wanted = (0.5 * ops::log2(share / texel))
+        // One level more than the share asks for hides the single samples of a bright spot (same source).
+        let wanted = (0.5 * ops::log2(share / texel) + 1.0)
             .max(level as f32 - 1.0)
             .round() as usize;
         Sample {

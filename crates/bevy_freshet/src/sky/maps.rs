@@ -221,13 +221,13 @@ fn replaced(images: &mut Assets<Image>, handle: &Handle<Image>, image: Image) ->
 
 /// Exposure value for a scene on level ground under `sky` and `sun` lux.
 ///
-/// Metered as ISO 2720 does incident light, EV = log₂(E / 2.5 lx), but never so long that the sky, of mean luminance L,
-/// comes out more than 1.4 stops above middle grey, EV = log₂(8 L) − 1.4: that is what keeps a low sun golden. In the dark
+/// Metered as ISO 2720 does incident light, EV = log₂(E / 3.3 lx), but never so long that the sky, of mean luminance L,
+/// comes out more than 1.7 stops above middle grey, EV = log₂(8 L) − 1.7: that is what keeps a low sun golden. In the dark
 /// a picture is left darker than by day, as it is seen: by a quarter of a stop for each stop below 100 lx, four at most.
 fn exposure_value(sky: f32, sun: f32) -> f32 {
     let ground = (sky + sun).max(1e-4);
-    let incident = ops::log2(ground / 2.5);
-    let reflected = ops::log2(8.0 * sky.max(1e-4) / PI) - 1.4;
+    let incident = ops::log2(ground / 3.3);
+    let reflected = ops::log2(8.0 * sky.max(1e-4) / PI) - 1.7;
     let dark = ops::log2(100.0 / ground).max(0.0);
     incident.max(reflected) + (0.25 * dark).min(4.0)
 }
