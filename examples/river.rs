@@ -1,11 +1,11 @@
 //! A real river: checkered balls, crates, logs and a boat float down a meandering channel.
 //!
 //! `--camera` chooses from `bank`, `bend`, `drift`, `shallows`, `boat`, `above`.
-mod common;
 #[path = "common/banks.rs"]
 mod banks;
 #[path = "common/bodies.rs"]
 mod bodies;
+mod common;
 
 use bevy::{
     camera::Hdr,
@@ -70,13 +70,43 @@ fn main() -> Result<AppExit, Box<dyn std::error::Error>> {
         app.add_systems(Last, print_table);
     }
     if let Ok(off) = std::env::var("OFF") {
-        app.add_systems(Update, move |mut c: Commands, w: Query<Entity, With<Water>>, b: Query<Entity, With<BedShading>>, mut r: Query<&mut WaterReflection>, mut l: Query<&mut DirectionalLight>, n: Query<(Entity, &Name)>| {
-            if off.contains("banks") { for (e, n) in &n { if n.as_str() == "Banks" { c.entity(e).despawn(); } } }
-            if off.contains("water") { for e in &w { c.entity(e).despawn(); } }
-            if off.contains("mirror") { for mut x in &mut r { x.planar = false; } }
-            if off.contains("shadow") { for mut x in &mut l { x.shadow_maps_enabled = false; } }
-            if off.contains("bed") { for e in &b { c.entity(e).despawn(); } }
-        });
+        app.add_systems(
+            Update,
+            move |mut c: Commands,
+                  w: Query<Entity, With<Water>>,
+                  b: Query<Entity, With<BedShading>>,
+                  mut r: Query<&mut WaterReflection>,
+                  mut l: Query<&mut DirectionalLight>,
+                  n: Query<(Entity, &Name)>| {
+                if off.contains("banks") {
+                    for (e, n) in &n {
+                        if n.as_str() == "Banks" {
+                            c.entity(e).despawn();
+                        }
+                    }
+                }
+                if off.contains("water") {
+                    for e in &w {
+                        c.entity(e).despawn();
+                    }
+                }
+                if off.contains("mirror") {
+                    for mut x in &mut r {
+                        x.planar = false;
+                    }
+                }
+                if off.contains("shadow") {
+                    for mut x in &mut l {
+                        x.shadow_maps_enabled = false;
+                    }
+                }
+                if off.contains("bed") {
+                    for e in &b {
+                        c.entity(e).despawn();
+                    }
+                }
+            },
+        );
     }
     Ok(common::run(app))
 }
@@ -173,13 +203,13 @@ fn float(
 ) {
     let bodies = Bodies::new(&assets, &mut meshes, &mut materials, &mut images);
     // The middle of the channel from the start round the first bend.
-    let channel = [START, vec2(-88.0, 226.0), vec2(-70.0, 250.0), vec2(-42.0, 259.0), vec2(-14.0, 249.0), vec2(8.0, 226.0)];
+    let channel =
+        [START, vec2(-88.0, 226.0), vec2(-70.0, 250.0), vec2(-42.0, 259.0), vec2(-14.0, 249.0), vec2(8.0, 226.0)];
     let mut random = fastrand::Rng::with_seed(options.seed);
     for i in 0..BODIES {
         let along = (i as f32 + 0.5) / BODIES as f32 * (channel.len() - 1) as f32;
         let (from, share) = (along as usize, along.fract());
-        let place = channel[from].lerp(channel[from + 1], share)
-            + vec2(random.f32() - 0.5, random.f32() - 0.5) * 8.0;
+        let place = channel[from].lerp(channel[from + 1], share) + vec2(random.f32() - 0.5, random.f32() - 0.5) * 8.0;
         let turn = Quat::from_rotation_y(random.f32() * std::f32::consts::TAU);
         bodies.spawn(&mut commands, i, Transform::from_xyz(place.x, LEVEL + 0.2, place.y).with_rotation(turn));
     }

@@ -1,6 +1,9 @@
 //! Reflectance, absorption, refraction and fog, read from pixels.
 use crate::stage::{SIZE, Stage, still_water};
-use bevy::{pbr::{DistanceFog, FogFalloff}, prelude::*};
+use bevy::{
+    pbr::{DistanceFog, FogFalloff},
+    prelude::*,
+};
 use bevy_freshet::prelude::*;
 use freshet_hydro::optics::{fresnel_exact, fresnel_schlick};
 
@@ -206,8 +209,7 @@ fn the_bed_keeps_its_own_fog_only_once() {
     stage.paint(bed, LinearRgba::rgb(0.5, 0.5, 0.5), Transform::from_xyz(0.0, -0.01, 0.0));
     let pose = Transform::from_xyz(0.0, 6.0, 0.0).looking_to(vec3(0.0, -0.1, -1.0), Vec3::Y);
     let camera = stage.camera(PerspectiveProjection::default(), pose);
-    let fog =
-        DistanceFog { color: Color::WHITE, falloff: FogFalloff::Exponential { density: 0.02 }, ..default() };
+    let fog = DistanceFog { color: Color::WHITE, falloff: FogFalloff::Exponential { density: 0.02 }, ..default() };
     stage.app.world_mut().entity_mut(camera).insert(fog);
     let wet = stage.picture(camera);
     let world = stage.app.world_mut();

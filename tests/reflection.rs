@@ -49,10 +49,8 @@ fn expected(stage: &Stage, camera: Entity, center: Vec3) -> (Vec2, Vec2) {
 fn hide_boxes_from(stage: &mut Stage, camera: Entity) {
     use bevy::camera::visibility::RenderLayers;
     let world = stage.app.world_mut();
-    let things: Vec<Entity> = world
-        .query_filtered::<Entity, (With<Mesh3d>, With<MeshMaterial3d<StandardMaterial>>)>()
-        .iter(world)
-        .collect();
+    let things: Vec<Entity> =
+        world.query_filtered::<Entity, (With<Mesh3d>, With<MeshMaterial3d<StandardMaterial>>)>().iter(world).collect();
     for thing in things {
         world.entity_mut(thing).insert(RenderLayers::layer(1));
     }
@@ -203,7 +201,8 @@ fn the_sky_is_mirrored_where_nothing_is_drawn() {
     let surface = WaterSurface { view: SurfaceView::Reflection, ..surface };
     stage.spawn((water, waves, surface, optics));
     stage.app.insert_resource(ClearColor(Color::linear_rgb(0.2, 0.4, 0.6)));
-    let camera = stage.camera(perspective(), Transform::from_xyz(0.0, 3.0, 0.0).looking_to(vec3(0.0, -1.0, -1.0), Vec3::Y));
+    let camera =
+        stage.camera(perspective(), Transform::from_xyz(0.0, 3.0, 0.0).looking_to(vec3(0.0, -1.0, -1.0), Vec3::Y));
     let seen = stage.picture(camera).at(SIZE.x / 2, SIZE.y / 2);
     assert!(seen.distance(vec3(0.2, 0.4, 0.6)) < 2e-3, "{seen}");
 }

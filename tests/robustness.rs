@@ -46,10 +46,7 @@ fn no_two_systems_race() {
         let strict = ScheduleBuildSettings { ambiguity_detection: LogLevel::Error, ..default() };
         let world = app.world_mut();
         world.resource_mut::<Schedules>().configure_schedules(strict.clone());
-        app.sub_app_mut(bevy::render::RenderApp)
-            .world_mut()
-            .resource_mut::<Schedules>()
-            .configure_schedules(strict);
+        app.sub_app_mut(bevy::render::RenderApp).world_mut().resource_mut::<Schedules>().configure_schedules(strict);
     });
     stage.spawn(Water::default());
     stage.app.update();

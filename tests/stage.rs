@@ -39,9 +39,10 @@ impl Picture {
 
     /// Every pixel with its colour.
     pub fn pixels(&self) -> impl Iterator<Item = (UVec2, Vec3)> {
-        self.texels.iter().enumerate().map(|(i, texel)| {
-            (uvec2(i as u32 % self.size.x, i as u32 / self.size.x), texel.truncate())
-        })
+        self.texels
+            .iter()
+            .enumerate()
+            .map(|(i, texel)| (uvec2(i as u32 % self.size.x, i as u32 / self.size.x), texel.truncate()))
     }
 
     /// The pixels' bits, for comparing pictures exactly.

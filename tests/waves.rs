@@ -28,11 +28,8 @@ fn scene(stage: &mut Stage, waves: WaterWaves, pose: Transform) -> Entity {
 /// Drawn and queried heights over the still surface at 1000 places of the picture.
 fn heights(stage: &mut Stage, camera: Entity, center: Vec2) -> Vec<(Vec2, f32, f32)> {
     let picture = stage.picture(camera);
-    let pixels: Vec<UVec2> =
-        (0..1000).map(|i| uvec2(i * 37 % SIZE.x, (i * 61 + i / 7) % SIZE.y)).collect();
-    let place = move |pixel: UVec2| {
-        center + (pixel.as_vec2() + 0.5 - SIZE.as_vec2() / 2.0) * (WIDTH / SIZE.x as f32)
-    };
+    let pixels: Vec<UVec2> = (0..1000).map(|i| uvec2(i * 37 % SIZE.x, (i * 61 + i / 7) % SIZE.y)).collect();
+    let place = move |pixel: UVec2| center + (pixel.as_vec2() + 0.5 - SIZE.as_vec2() / 2.0) * (WIDTH / SIZE.x as f32);
     let queried = {
         let pixels = pixels.clone();
         stage
@@ -100,12 +97,8 @@ fn drawn_height_is_the_queried_height_where_waves_fade_on_a_shore() {
 
 #[test]
 fn a_crest_travels_with_the_phase_speed() {
-    let wave = |wavelength: f32| bevy_freshet::body::Wave {
-        direction: Vec2::X,
-        wavelength,
-        steepness: 0.15,
-        phase: 0.0,
-    };
+    let wave =
+        |wavelength: f32| bevy_freshet::body::Wave { direction: Vec2::X, wavelength, steepness: 0.15, phase: 0.0 };
     let depth = 0.4;
     let waves = WaterWaves { trains: vec![wave(2.0)], depth, fade_depth: 0.0 };
     let mut stage = Stage::new();

@@ -22,41 +22,16 @@ use places::Habitat;
 pub use places::Site;
 use shape::{Shape, between};
 
-const REEDS: Habitat = Habitat {
-    elevation: [-0.25, 0.30],
-    slope: [0.0, 0.6],
-    spacing: 0.75,
-    patches: (0.40, 14.0),
-    most: 900,
-};
-const TUSSOCKS: Habitat = Habitat {
-    elevation: [0.05, 1.20],
-    slope: [0.0, 0.8],
-    spacing: 0.6,
-    patches: (0.25, 8.0),
-    most: 1000,
-};
-const STONES: Habitat = Habitat {
-    elevation: [-0.45, 0.35],
-    slope: [0.0, 1.5],
-    spacing: 0.7,
-    patches: (0.22, 7.0),
-    most: 180,
-};
-const BUSHES: Habitat = Habitat {
-    elevation: [0.30, 3.00],
-    slope: [0.0, 0.5],
-    spacing: 5.0,
-    patches: (0.25, 20.0),
-    most: 14,
-};
-const TREES: Habitat = Habitat {
-    elevation: [0.45, 9.00],
-    slope: [0.0, 0.4],
-    spacing: 6.0,
-    patches: (0.28, 35.0),
-    most: 22,
-};
+const REEDS: Habitat =
+    Habitat { elevation: [-0.25, 0.30], slope: [0.0, 0.6], spacing: 0.75, patches: (0.40, 14.0), most: 900 };
+const TUSSOCKS: Habitat =
+    Habitat { elevation: [0.05, 1.20], slope: [0.0, 0.8], spacing: 0.6, patches: (0.25, 8.0), most: 1000 };
+const STONES: Habitat =
+    Habitat { elevation: [-0.45, 0.35], slope: [0.0, 1.5], spacing: 0.7, patches: (0.22, 7.0), most: 180 };
+const BUSHES: Habitat =
+    Habitat { elevation: [0.30, 3.00], slope: [0.0, 0.5], spacing: 5.0, patches: (0.25, 20.0), most: 14 };
+const TREES: Habitat =
+    Habitat { elevation: [0.45, 9.00], slope: [0.0, 0.4], spacing: 6.0, patches: (0.28, 35.0), most: 22 };
 
 /// Spawns everything under one entity, which is returned. Despawn that to clear the bank.
 pub fn spawn_banks(
@@ -66,11 +41,7 @@ pub fn spawn_banks(
     materials: &mut Assets<StandardMaterial>,
     site: &Site,
 ) -> Entity {
-    let root = (
-        Name::new("Banks"),
-        Transform::default(),
-        Visibility::default(),
-    );
+    let root = (Name::new("Banks"), Transform::default(), Visibility::default());
     let root = commands.spawn(root).id();
     let mut random = fastrand::Rng::with_seed(site.seed);
     let looks = Looks::new(assets, materials);
@@ -87,9 +58,7 @@ pub fn spawn_banks(
     for place in site.scatter(&TUSSOCKS, 2) {
         let size = between(&mut random, 0.9, 1.6);
         let pose = place.upright(&mut random, size);
-        let tussock = looks
-            .grass
-            .dress(random.choice(&kinds.tussocks), pose, root);
+        let tussock = looks.grass.dress(random.choice(&kinds.tussocks), pose, root);
         commands.spawn((tussock, small(70.0)));
     }
     for place in site.scatter(&STONES, 3) {
@@ -115,11 +84,7 @@ pub fn spawn_banks(
 }
 
 fn seen_within(far: f32) -> VisibilityRange {
-    VisibilityRange {
-        start_margin: 0.0..0.0,
-        end_margin: 0.8 * far..far,
-        use_aabb: false,
-    }
+    VisibilityRange { start_margin: 0.0..0.0, end_margin: 0.8 * far..far, use_aabb: false }
 }
 
 /// The meshes: a few of each sort, which stand again and again.
@@ -161,12 +126,7 @@ struct Look(Handle<StandardMaterial>);
 impl Look {
     fn dress(&self, mesh: Option<&Handle<Mesh>>, pose: Transform, root: Entity) -> impl Bundle {
         let mesh = mesh.cloned().unwrap_or_default();
-        (
-            Mesh3d(mesh),
-            MeshMaterial3d(self.0.clone()),
-            pose,
-            ChildOf(root),
-        )
+        (Mesh3d(mesh), MeshMaterial3d(self.0.clone()), pose, ChildOf(root))
     }
 }
 
@@ -201,25 +161,14 @@ impl Looks {
                 ..ImageSamplerDescriptor::linear()
             });
         };
-        let bark = assets
-            .load_builder()
-            .with_settings(repeated)
-            .load("textures/bark.png");
+        let bark = assets.load_builder().with_settings(repeated).load("textures/bark.png");
         let mut look = |material| Look(materials.add(material));
         Self {
             reeds: look(cut_out("textures/reed.png")),
             leaves: look(cut_out("textures/leaves.png")),
             grass: look(leafy.clone()),
-            stone: look(StandardMaterial {
-                perceptual_roughness: 0.9,
-                reflectance: 0.3,
-                ..default()
-            }),
-            bark: look(StandardMaterial {
-                base_color_texture: Some(bark),
-                perceptual_roughness: 0.95,
-                ..default()
-            }),
+            stone: look(StandardMaterial { perceptual_roughness: 0.9, reflectance: 0.3, ..default() }),
+            bark: look(StandardMaterial { base_color_texture: Some(bark), perceptual_roughness: 0.95, ..default() }),
         }
     }
 }

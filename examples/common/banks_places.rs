@@ -45,21 +45,15 @@ impl Place {
         let turn = Quat::from_rotation_y(random.f32() * TAU);
         let size = size * (0.6 + 0.4 * self.vigour);
         let tall = between(random, 0.9, 1.1);
-        Transform::from_translation(self.foot)
-            .with_rotation(turn)
-            .with_scale(vec3(size, size * tall, size))
+        Transform::from_translation(self.foot).with_rotation(turn).with_scale(vec3(size, size * tall, size))
     }
 
     /// A pose for what lies in the ground.
     pub fn half_sunk(&self, random: &mut fastrand::Rng, size: f32) -> Transform {
-        let tilt = Quat::from_rotation_arc(Vec3::Y, self.normal)
-            * Quat::from_rotation_y(random.f32() * TAU);
-        let roll = Quat::from_rotation_z(between(random, -0.3, 0.3))
-            * Quat::from_rotation_x(PI * random.f32() * 0.1);
+        let tilt = Quat::from_rotation_arc(Vec3::Y, self.normal) * Quat::from_rotation_y(random.f32() * TAU);
+        let roll = Quat::from_rotation_z(between(random, -0.3, 0.3)) * Quat::from_rotation_x(PI * random.f32() * 0.1);
         let sunk = self.foot - self.normal * size * between(random, 0.02, 0.14);
-        Transform::from_translation(sunk)
-            .with_rotation(tilt * roll)
-            .with_scale(Vec3::splat(size))
+        Transform::from_translation(sunk).with_rotation(tilt * roll).with_scale(Vec3::splat(size))
     }
 }
 
@@ -71,9 +65,7 @@ impl Site<'_> {
         let (share, size) = habitat.patches;
         let cells = (self.area.size() / habitat.spacing).ceil().as_uvec2();
         let mut places = Vec::new();
-        for (row, column) in
-            (0..cells.y).flat_map(|row| (0..cells.x).map(move |column| (row, column)))
-        {
+        for (row, column) in (0..cells.y).flat_map(|row| (0..cells.x).map(move |column| (row, column))) {
             let jitter = vec2(random.f32(), random.f32());
             let at = self.area.min + (vec2(column as f32, row as f32) + jitter) * habitat.spacing;
             let field = noise.get((at / size).as_dvec2().to_array()) as f32;
@@ -82,10 +74,7 @@ impl Site<'_> {
             // Patches thin out, and their plants grow smaller, towards the edge.
             let vigour = ((rank - (1.0 - share)) / (0.5 * share)).clamp(0.0, 1.0);
             if random.f32() < vigour {
-                places.extend(
-                    self.place(at, vigour)
-                        .filter(|place| habitat.suits(place, self.water_level)),
-                );
+                places.extend(self.place(at, vigour).filter(|place| habitat.suits(place, self.water_level)));
             }
         }
         random.shuffle(&mut places);
@@ -97,17 +86,10 @@ impl Site<'_> {
     fn place(&self, at: Vec2, vigour: f32) -> Option<Place> {
         const STEP: f32 = 0.5;
         let height = |x: f32, z: f32| (self.height)(at.x + x, at.y + z);
-        let rise = vec2(
-            height(STEP, 0.0) - height(-STEP, 0.0),
-            height(0.0, STEP) - height(0.0, -STEP),
-        );
+        let rise = vec2(height(STEP, 0.0) - height(-STEP, 0.0), height(0.0, STEP) - height(0.0, -STEP));
         let normal = vec3(-rise.x, 2.0 * STEP, -rise.y).normalize();
         let foot = vec3(at.x, height(0.0, 0.0), at.y);
-        (foot.is_finite() && normal.is_finite()).then_some(Place {
-            foot,
-            normal,
-            vigour,
-        })
+        (foot.is_finite() && normal.is_finite()).then_some(Place { foot, normal, vigour })
     }
 }
 

@@ -14,13 +14,7 @@ pub fn reed_clump(random: &mut fastrand::Rng) -> Shape {
         let size = between(random, 1.3, 1.9);
         let lean = any_direction(random).with_y(0.0) * 0.15;
         let tint = Vec3::new(1.0, between(random, 0.92, 1.1), 0.85) * between(random, 0.75, 1.1);
-        shape.card(
-            foot,
-            right * size * 0.8,
-            Vec3::Y * size + lean,
-            Vec3::Y + right.cross(Vec3::Y) * 0.3,
-            tint,
-        );
+        shape.card(foot, right * size * 0.8, Vec3::Y * size + lean, Vec3::Y + right.cross(Vec3::Y) * 0.3, tint);
     }
     shape
 }
@@ -38,13 +32,7 @@ pub fn tussock(random: &mut fastrand::Rng) -> Shape {
         let rise = Vec3::Y * tall + out * tall * between(random, 0.05, 0.3);
         let bend = (out - Vec3::Y * 0.6) * tall * between(random, 0.15, 0.6);
         let shade = between(random, 0.75, 1.2);
-        shape.blade(
-            out * random.f32() * 0.12 - Vec3::Y * 0.04,
-            rise,
-            bend,
-            0.017,
-            [base * shade, tip * shade],
-        );
+        shape.blade(out * random.f32() * 0.12 - Vec3::Y * 0.04, rise, bend, 0.017, [base * shade, tip * shade]);
     }
     shape
 }
@@ -55,18 +43,7 @@ pub fn bush(random: &mut fastrand::Rng) -> Shape {
     for _ in 0..5 {
         let middle = any_direction(random).with_y(0.0) * 0.5 + Vec3::Y * between(random, 0.4, 0.8);
         let radius = between(random, 0.4, 0.6);
-        sprays(
-            &mut leaves,
-            random,
-            Crown {
-                middle,
-                radius,
-                heart: Vec3::Y * 0.5,
-                droop: 0.1,
-            },
-            13,
-            0.55,
-        );
+        sprays(&mut leaves, random, Crown { middle, radius, heart: Vec3::Y * 0.5, droop: 0.1 }, 13, 0.55);
     }
     leaves
 }
@@ -86,21 +63,9 @@ pub struct Kind {
 }
 
 /// A broad, often many-stemmed tree of the waterside with silvery hanging leaves.
-pub const WILLOW: Kind = Kind {
-    height: 7.5,
-    spread: 0.75,
-    droop: 0.65,
-    trunks: 2,
-    tint: vec3(1.05, 1.08, 0.95),
-};
+pub const WILLOW: Kind = Kind { height: 7.5, spread: 0.75, droop: 0.65, trunks: 2, tint: vec3(1.05, 1.08, 0.95) };
 /// A slender, darker tree with level twigs.
-pub const ALDER: Kind = Kind {
-    height: 9.0,
-    spread: 0.45,
-    droop: 0.15,
-    trunks: 1,
-    tint: vec3(0.62, 0.78, 0.55),
-};
+pub const ALDER: Kind = Kind { height: 9.0, spread: 0.45, droop: 0.15, trunks: 1, tint: vec3(0.62, 0.78, 0.55) };
 
 /// Wood and leaves of a tree.
 pub fn tree(random: &mut fastrand::Rng, kind: &Kind) -> (Shape, Shape) {
@@ -125,12 +90,7 @@ pub fn tree(random: &mut fastrand::Rng, kind: &Kind) -> (Shape, Shape) {
     let mut leaves = Shape::default();
     for middle in crowns {
         let radius = between(random, 0.10, 0.14) * kind.height;
-        let crown = Crown {
-            middle,
-            radius,
-            heart,
-            droop: kind.droop,
-        };
+        let crown = Crown { middle, radius, heart, droop: kind.droop };
         sprays(&mut leaves, random, crown, 11, 0.15 * kind.height);
     }
     leaves.tint(kind.tint);
@@ -145,30 +105,13 @@ struct Limb {
 }
 
 /// Draws a limb and the limbs that leave it; the ends of the finest, and of the rest, carry crowns.
-fn grow(
-    wood: &mut Shape,
-    crowns: &mut Vec<Vec3>,
-    random: &mut fastrand::Rng,
-    kind: &Kind,
-    limb: &Limb,
-) {
+fn grow(wood: &mut Shape, crowns: &mut Vec<Vec3>, random: &mut fastrand::Rng, kind: &Kind, limb: &Limb) {
     let sway = any_direction(random) * limb.rise.length() * 0.06;
     let at = |t: f32| limb.base + limb.rise * t + sway * (t * std::f32::consts::PI * 1.5).sin();
     let rings = [5, 4, 2][limb.level];
     let points: Vec<(Vec3, f32)> = (0..=rings)
         .map(|i| i as f32 / rings as f32)
-        .map(|t| {
-            (
-                at(t),
-                limb.radius
-                    * (1.0 - 0.75 * t)
-                    * if limb.level == 0 && t == 0.0 {
-                        1.5
-                    } else {
-                        1.0
-                    },
-            )
-        })
+        .map(|t| (at(t), limb.radius * (1.0 - 0.75 * t) * if limb.level == 0 && t == 0.0 { 1.5 } else { 1.0 }))
         .collect();
     wood.tube(&points, [7, 4, 3][limb.level], Vec3::ONE);
     crowns.push(at(1.0));
@@ -186,9 +129,7 @@ fn grow(
         let length = limb.rise.length() * between(random, 0.34, 0.48) * (1.15 - 0.6 * t);
         let child = Limb {
             base: at(t),
-            rise: (upward * (1.0 - kind.spread) + out * (0.35 + kind.spread)).normalize_or(Vec3::Y)
-                * length
-                * 1.25,
+            rise: (upward * (1.0 - kind.spread) + out * (0.35 + kind.spread)).normalize_or(Vec3::Y) * length * 1.25,
             radius: limb.radius * (1.0 - 0.75 * t) * 0.55,
             level: limb.level + 1,
         };
@@ -210,9 +151,7 @@ fn sprays(leaves: &mut Shape, random: &mut fastrand::Rng, crown: Crown, count: u
         let out = any_direction(random);
         let foot = crown.middle + out * crown.radius * between(random, 0.2, 0.9);
         let from_heart = foot - crown.heart;
-        let up = (out + Vec3::Y * 0.35)
-            .normalize_or(Vec3::Y)
-            .lerp(Vec3::NEG_Y, crown.droop * random.f32());
+        let up = (out + Vec3::Y * 0.35).normalize_or(Vec3::Y).lerp(Vec3::NEG_Y, crown.droop * random.f32());
         let right = up.cross(any_direction(random)).normalize_or(Vec3::X);
         let size = size * between(random, 0.75, 1.2);
         let normal = from_heart.normalize_or(Vec3::Y) + out * 0.6 + Vec3::Y * 0.5;
@@ -220,12 +159,6 @@ fn sprays(leaves: &mut Shape, random: &mut fastrand::Rng, crown: Crown, count: u
         let depth = (from_heart.length() / (crown.radius * 4.0)).min(1.0);
         let light = (0.45 + 0.4 * depth + 0.2 * out.y) * between(random, 0.85, 1.15);
         let hue = vec3(between(random, 0.9, 1.15), 1.0, between(random, 0.8, 1.0));
-        leaves.card(
-            foot - up * size * 0.3,
-            right * size,
-            up.normalize_or(Vec3::Y) * size,
-            normal,
-            hue * light,
-        );
+        leaves.card(foot - up * size * 0.3, right * size, up.normalize_or(Vec3::Y) * size, normal, hue * light);
     }
 }

@@ -36,14 +36,9 @@ impl Shape {
         let first = self.positions.len() as u32;
         let mut along = 0.0;
         for (i, (center, radius)) in points.iter().enumerate() {
-            let (before, after) = (
-                points[i.saturating_sub(1)].0,
-                points[(i + 1).min(points.len() - 1)].0,
-            );
+            let (before, after) = (points[i.saturating_sub(1)].0, points[(i + 1).min(points.len() - 1)].0);
             along += before.distance(*center);
-            let (right, up) = (after - before)
-                .normalize_or(Vec3::Y)
-                .any_orthonormal_pair();
+            let (right, up) = (after - before).normalize_or(Vec3::Y).any_orthonormal_pair();
             for side in 0..=sides {
                 let turn = side as f32 / sides as f32;
                 let out = right * (turn * TAU).cos() + up * (turn * TAU).sin();
@@ -66,14 +61,7 @@ impl Shape {
         let point = |t: f32| base + rise * t + bend * t * t;
         let rows = [(0.0, 0.8), (0.55, 1.0)].map(|(t, wide): (f32, f32)| {
             let color = colors[0].lerp(colors[1], t);
-            [-1.0, 1.0].map(|s| {
-                self.vertex(
-                    point(t) + side * s * wide,
-                    normal,
-                    vec2(0.5, 1.0 - t),
-                    color,
-                )
-            })
+            [-1.0, 1.0].map(|s| self.vertex(point(t) + side * s * wide, normal, vec2(0.5, 1.0 - t), color))
         });
         let tip = self.vertex(point(1.0), normal, vec2(0.5, 0.0), colors[1]);
         let [[a, b], [c, d]] = rows;
@@ -100,15 +88,12 @@ impl Shape {
     }
 
     pub fn into_mesh(self) -> Mesh {
-        Mesh::new(
-            PrimitiveTopology::TriangleList,
-            RenderAssetUsages::RENDER_WORLD,
-        )
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, self.positions)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, self.uvs)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, self.colors)
-        .with_inserted_indices(Indices::U32(self.indices))
+        Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, self.positions)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, self.uvs)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, self.colors)
+            .with_inserted_indices(Indices::U32(self.indices))
     }
 }
 

@@ -11,24 +11,17 @@ pub fn stone(seed: u32, detail: u32) -> Shape {
     let surface = |d: Vec3| {
         let radius = 0.5 + 0.16 * at(d, 1.3) + 0.07 * at(d, 2.9) - 0.05 * at(d, 5.3).abs();
         // Broken faces: the radius ends at planes in a few directions.
-        let cut = [
-            vec3(0.3, 0.9, 0.2),
-            vec3(-0.8, 0.5, 0.4),
-            vec3(0.5, 0.4, -0.8),
-        ]
-        .iter()
-        .map(|face| 0.40 / d.dot(face.normalize()).max(0.2))
-        .fold(radius, f32::min);
+        let cut = [vec3(0.3, 0.9, 0.2), vec3(-0.8, 0.5, 0.4), vec3(0.5, 0.4, -0.8)]
+            .iter()
+            .map(|face| 0.40 / d.dot(face.normalize()).max(0.2))
+            .fold(radius, f32::min);
         d * cut * vec3(1.0, 0.62, 0.8)
     };
     let mut shape = Shape::default();
     let Ok(ball) = Sphere::new(1.0).mesh().ico(detail) else {
         return shape;
     };
-    let Some(directions) = ball
-        .attribute(Mesh::ATTRIBUTE_POSITION)
-        .and_then(|a| a.as_float3())
-    else {
+    let Some(directions) = ball.attribute(Mesh::ATTRIBUTE_POSITION).and_then(|a| a.as_float3()) else {
         return shape;
     };
     for direction in directions {
@@ -41,10 +34,7 @@ pub fn stone(seed: u32, detail: u32) -> Shape {
         let mossy = ((normal.normalize_or_zero().y - 0.6) + 1.4 * at(d, 3.0)).clamp(0.0, 0.8);
         shape.vertex(surface(d), normal, Vec2::ZERO, grey.lerp(lichen, mossy));
     }
-    let corners: Vec<u32> = ball
-        .indices()
-        .map(|i| i.iter().map(|i| i as u32).collect())
-        .unwrap_or_default();
+    let corners: Vec<u32> = ball.indices().map(|i| i.iter().map(|i| i as u32).collect()).unwrap_or_default();
     for corner in corners.as_chunks::<3>().0 {
         shape.triangle(corner[0], corner[1], corner[2]);
     }

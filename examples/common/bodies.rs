@@ -47,7 +47,8 @@ impl Bodies {
                 ..default()
             })
         };
-        let checkered = [Color::srgb(0.85, 0.12, 0.1), Color::srgb(0.95, 0.65, 0.1), Color::srgb(0.1, 0.35, 0.75)].map(&mut checkered);
+        let checkered = [Color::srgb(0.85, 0.12, 0.1), Color::srgb(0.95, 0.65, 0.1), Color::srgb(0.1, 0.35, 0.75)]
+            .map(&mut checkered);
         let bark = assets.load("textures/bark.png");
         let mut plain = |color, roughness: f32| {
             materials.add(StandardMaterial { base_color: color, perceptual_roughness: roughness, ..default() })
@@ -61,7 +62,11 @@ impl Bodies {
             deck: meshes.add(mesh_of(&hull_points(0.86, 0.12), false)),
             checkered,
             wood,
-            bark: materials.add(StandardMaterial { base_color_texture: Some(bark), perceptual_roughness: 0.9, ..default() }),
+            bark: materials.add(StandardMaterial {
+                base_color_texture: Some(bark),
+                perceptual_roughness: 0.9,
+                ..default()
+            }),
             paint,
         }
     }
@@ -100,7 +105,8 @@ impl Bodies {
     /// A small open boat.
     pub fn spawn_boat(&self, commands: &mut Commands, pose: Transform) -> Entity {
         let points = hull_points(1.0, 0.0);
-        let collider = Collider::convex_hull(&points).unwrap_or_else(|| Collider::cuboid(BOAT.x / 2.0, BOAT.y / 2.0, BOAT.z / 2.0));
+        let collider = Collider::convex_hull(&points)
+            .unwrap_or_else(|| Collider::cuboid(BOAT.x / 2.0, BOAT.y / 2.0, BOAT.z / 2.0));
         commands
             .spawn((
                 Name::new("boat"),
@@ -126,7 +132,8 @@ fn hull_points(scale: f32, raise: f32) -> Vec<Vec3> {
             // A pointed bow towards −z and a blunter stern.
             let along = -angle.cos();
             let width = angle.sin().abs().powf(if along < 0.0 { 1.3 } else { 0.7 }) * angle.sin().signum();
-            vec3(width * BOAT.x / 2.0 * fullness, height, along * BOAT.z / 2.0 * (0.75 + 0.25 * fullness)) * vec3(scale, 1.0, scale)
+            vec3(width * BOAT.x / 2.0 * fullness, height, along * BOAT.z / 2.0 * (0.75 + 0.25 * fullness))
+                * vec3(scale, 1.0, scale)
         })
     };
     ring(BOAT.y / 2.0, 1.0).chain(ring(raise - BOAT.y / 2.0, 0.55)).collect()

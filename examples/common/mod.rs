@@ -45,9 +45,9 @@ fn size(text: &str) -> Result<UVec2, String> {
         let (width, height) = text.split_once('x')?;
         Some(uvec2(width.parse().ok()?, height.parse().ok()?))
     };
-    parse().filter(|size| (1..=8192).contains(&size.min_element()) && size.max_element() <= 8192).ok_or_else(|| {
-        format!("expected WIDTHxHEIGHT between 1x1 and 8192x8192, found {text:?}")
-    })
+    parse()
+        .filter(|size| (1..=8192).contains(&size.min_element()) && size.max_element() <= 8192)
+        .ok_or_else(|| format!("expected WIDTHxHEIGHT between 1x1 and 8192x8192, found {text:?}"))
 }
 
 /// Length of a frame without a window, s: headless runs do not follow the wall clock, so that they repeat.
@@ -75,9 +75,7 @@ pub fn app(title: &str, options: &Options) -> App {
     if options.out.is_none() {
         let resolution = options.size.into();
         let window = Window { title: title.into(), resolution, ..default() };
-        app.add_plugins(
-            DefaultPlugins.set(assets).set(WindowPlugin { primary_window: Some(window), ..default() }),
-        );
+        app.add_plugins(DefaultPlugins.set(assets).set(WindowPlugin { primary_window: Some(window), ..default() }));
         app.insert_resource(Canvas::default());
     } else {
         let windows = WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() };
@@ -173,9 +171,9 @@ fn take_picture(app: &mut App, out: &std::path::Path) -> Result<(), String> {
     let Some(target) = app.world().resource::<Canvas>().0.clone() else { return Err("there is no canvas".into()) };
     app.init_resource::<Taken>();
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
-    app.world_mut().spawn(Screenshot::image(target)).observe(
-        |captured: On<ScreenshotCaptured>, mut taken: ResMut<Taken>| taken.0 = Some(captured.image.clone()),
-    );
+    app.world_mut()
+        .spawn(Screenshot::image(target))
+        .observe(|captured: On<ScreenshotCaptured>, mut taken: ResMut<Taken>| taken.0 = Some(captured.image.clone()));
     for _ in 0..20 {
         app.update();
         if let Some(image) = app.world_mut().resource_mut::<Taken>().0.take() {

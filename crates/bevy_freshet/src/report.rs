@@ -42,9 +42,7 @@ impl Reported {
         range: core::ops::RangeInclusive<f32>,
         fallback: Vec3,
     ) -> Vec3 {
-        Vec3::from_array(core::array::from_fn(|i| {
-            self.clamp(entity, field, value[i], range.clone(), fallback[i])
-        }))
+        Vec3::from_array(core::array::from_fn(|i| self.clamp(entity, field, value[i], range.clone(), fallback[i])))
     }
 }
 

@@ -129,16 +129,8 @@ impl fmt::Display for EsriGrid {
         }
         let size = self.grid.size();
         writeln!(f, "NCOLS {}\nNROWS {}", size.x, size.y)?;
-        writeln!(
-            f,
-            "XLLCORNER {}\nYLLCORNER {}",
-            self.corner.x, self.corner.y
-        )?;
-        writeln!(
-            f,
-            "CELLSIZE {}\nNODATA_VALUE {no_data}",
-            self.grid.cell_size()
-        )?;
+        writeln!(f, "XLLCORNER {}\nYLLCORNER {}", self.corner.x, self.corner.y)?;
+        writeln!(f, "CELLSIZE {}\nNODATA_VALUE {no_data}", self.grid.cell_size())?;
         for row in self.grid.values().chunks(size.x as usize) {
             for (column, value) in row.iter().enumerate() {
                 let blank = if column == 0 { "" } else { " " };

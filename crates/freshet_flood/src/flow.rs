@@ -70,41 +70,25 @@ fn table(terrain: &EsriGrid, level: f32, flow: &FlowField) -> Result<String, std
     let mut table = String::new();
     let bed = &terrain.grid;
     let (size, extent) = (bed.size(), bed.extent());
-    writeln!(
-        table,
-        "terrain     {} × {} cells, {} × {} m",
-        size.x, size.y, extent.x, extent.y
-    )?;
+    writeln!(table, "terrain     {} × {} cells, {} × {} m", size.x, size.y, extent.x, extent.y)?;
     writeln!(table, "reach area  {:.0} m²", flow.area())?;
     writeln!(table, "head drop   {:.3} m", flow.head_drop())?;
     writeln!(table, "mean speed  {:.2} m/s", flow.mean_speed())?;
     writeln!(table, "max speed   {:.2} m/s", flow.max_speed())?;
-    writeln!(
-        table,
-        "discharge in m³/s at sections along the river, through cell faces and as speed × depth seen:"
-    )?;
+    writeln!(table, "discharge in m³/s at sections along the river, through cell faces and as speed × depth seen:")?;
     writeln!(table, "{:>9} {:>9} {:>9} {:>9}", "x", "z", "faces", "seen")?;
     for section in flow.sections(SECTIONS) {
         let middle = section.from.midpoint(section.to);
         let seen = discharge_across(flow.velocity(), bed, level, &section);
         let faces = flow.discharge_through(&section);
-        writeln!(
-            table,
-            "{:9.1} {:9.1} {faces:9.3} {seen:9.3}",
-            middle.x, middle.y
-        )?;
+        writeln!(table, "{:9.1} {:9.1} {faces:9.3} {seen:9.3}", middle.x, middle.y)?;
     }
     Ok(table)
 }
 
 /// Two points written as X,Z:X,Z.
 fn points(text: &str) -> Result<[DVec2; 2], String> {
-    let number = |text: &str| {
-        text.trim()
-            .parse()
-            .ok()
-            .filter(|number: &f64| number.is_finite())
-    };
+    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
     let point = |text: &str| {
         let (x, z) = text.split_once(',')?;
         Some(dvec2(number(x)?, number(z)?))

@@ -106,20 +106,11 @@ pub enum FlowMapError {
 impl FlowMap {
     /// A map of `velocity` (m/s) with the least scale that holds every component, for water at `level` metres.
     pub fn new(velocity: Grid<Vec2>, level: Option<f32>) -> Self {
-        let finite = velocity
-            .values()
-            .iter()
-            .filter(|velocity| velocity.is_finite());
-        let most = finite.fold(0.0_f32, |most, velocity| {
-            most.max(velocity.abs().max_element())
-        });
+        let finite = velocity.values().iter().filter(|velocity| velocity.is_finite());
+        let most = finite.fold(0.0_f32, |most, velocity| most.max(velocity.abs().max_element()));
         // Still water has no scale of its own.
         let scale = if most > 0.0 { most } else { 1.0 };
-        Self {
-            velocity,
-            scale,
-            level,
-        }
+        Self { velocity, scale, level }
     }
 
     /// Reads a PNG file.
@@ -130,10 +121,9 @@ impl FlowMap {
         let path = path.as_ref().to_path_buf();
         match fs::read(&path) {
             Err(source) => Err(FlowMapError::Io { path, source }),
-            Ok(bytes) => Self::decode(&bytes, defaults).map_err(|source| FlowMapError::File {
-                path,
-                source: Box::new(source),
-            }),
+            Ok(bytes) => {
+                Self::decode(&bytes, defaults).map_err(|source| FlowMapError::File { path, source: Box::new(source) })
+            }
         }
     }
 
@@ -161,10 +151,8 @@ impl FlowMap {
         reader.finish()?;
 
         let chunks = &reader.info().uncompressed_latin1_text;
-        let text: BTreeMap<&str, &str> = chunks
-            .iter()
-            .map(|chunk| (chunk.keyword.as_str(), chunk.text.as_str()))
-            .collect();
+        let text: BTreeMap<&str, &str> =
+            chunks.iter().map(|chunk| (chunk.keyword.as_str(), chunk.text.as_str())).collect();
         let scale = positive(SCALE_KEY, &text, defaults.scale)?;
         let cell_size = positive(CELL_SIZE_KEY, &text, defaults.cell_size)?;
         let level = text.get(LEVEL_KEY).map(|text| level(text)).transpose()?;
@@ -174,11 +162,7 @@ impl FlowMap {
         };
         let values = units.into_iter().map(|unit| unit * scale).collect();
         let velocity = Grid::new(UVec2::new(x, y), cell_size, values)?;
-        Ok(Self {
-            velocity,
-            scale,
-            level,
-        })
+        Ok(Self { velocity, scale, level })
     }
 
     /// Writes a PNG file of 16 bits per channel that describes itself.
@@ -188,13 +172,8 @@ impl FlowMap {
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), FlowMapError> {
         let path = path.as_ref().to_path_buf();
         match self.encode() {
-            Ok(bytes) => {
-                fs::write(&path, bytes).map_err(|source| FlowMapError::Io { path, source })
-            }
-            Err(source) => Err(FlowMapError::File {
-                path,
-                source: Box::new(source),
-            }),
+            Ok(bytes) => fs::write(&path, bytes).map_err(|source| FlowMapError::Io { path, source }),
+            Err(source) => Err(FlowMapError::File { path, source: Box::new(source) }),
         }
     }
 
@@ -219,10 +198,7 @@ impl FlowMap {
         if let Some(metres) = self.level {
             describe(LEVEL_KEY, level(&metres.to_string())?.to_string())?;
         }
-        describe(
-            "Comment",
-            "Red above half flows east, green above half flows south.".into(),
-        )?;
+        describe("Comment", "Red above half flows east, green above half flows south.".into())?;
 
         let samples = self.velocity.values().iter().flat_map(|&velocity| {
             let still = velocity.is_nan();
@@ -240,39 +216,29 @@ impl FlowMap {
 }
 
 /// The number above zero that the file gives for `key`, or else its default.
-fn positive(
-    key: &'static str,
-    text: &BTreeMap<&str, &str>,
-    default: Option<f32>,
-) -> Result<f32, FlowMapError> {
+fn positive(key: &'static str, text: &BTreeMap<&str, &str>, default: Option<f32>) -> Result<f32, FlowMapError> {
     let given = match text.get(key) {
         Some(text) => text.trim().parse().ok(),
         None => default,
     };
-    given
-        .filter(|value| value.is_finite() && *value > 0.0)
-        .ok_or_else(|| {
-            let found = text.get(key).map(|text| format!("“{text}”"));
-            FlowMapError::Description {
-                key,
-                expected: "a number above zero, in the file or given with it",
-                found: found
-                    .or(default.map(|value| value.to_string()))
-                    .unwrap_or("missing".into()),
-            }
-        })
+    given.filter(|value| value.is_finite() && *value > 0.0).ok_or_else(|| {
+        let found = text.get(key).map(|text| format!("“{text}”"));
+        FlowMapError::Description {
+            key,
+            expected: "a number above zero, in the file or given with it",
+            found: found.or(default.map(|value| value.to_string())).unwrap_or("missing".into()),
+        }
+    })
 }
 
 /// The water level in metres that `text` gives.
 fn level(text: &str) -> Result<f32, FlowMapError> {
     let level: Option<f32> = text.trim().parse().ok();
-    level
-        .filter(|level| level.is_finite())
-        .ok_or_else(|| FlowMapError::Description {
-            key: LEVEL_KEY,
-            expected: "a finite number",
-            found: format!("“{text}”"),
-        })
+    level.filter(|level| level.is_finite()).ok_or_else(|| FlowMapError::Description {
+        key: LEVEL_KEY,
+        expected: "a finite number",
+        found: format!("“{text}”"),
+    })
 }
 
 /// Velocities as shares of the scale. `channels` is 3 or 4.
@@ -288,9 +254,7 @@ fn units_of_8_bits(samples: &[u8], channels: usize) -> Vec<Vec2> {
 
 /// Velocities as shares of the scale. `channels` is 3 or 4.
 fn units_of_16_bits(samples: &[u8], channels: usize) -> Vec<Vec2> {
-    let unit = |high: u8, low: u8| {
-        ((f32::from(u16::from_be_bytes([high, low])) - 32768.0) / 32767.0).max(-1.0)
-    };
+    let unit = |high: u8, low: u8| ((f32::from(u16::from_be_bytes([high, low])) - 32768.0) / 32767.0).max(-1.0);
     let pixels = samples.chunks_exact(2 * channels);
     let units = pixels.map(|pixel| match pixel {
         [_, _, _, _, _, _, 0, 0] => Vec2::ZERO,

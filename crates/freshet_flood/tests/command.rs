@@ -20,22 +20,13 @@ fn canal(name: &str) -> PathBuf {
     });
     let corner = dvec2(1000.0, 2000.0);
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    EsriGrid {
-        corner,
-        grid: grid.unwrap(),
-    }
-    .write(&path)
-    .unwrap();
+    EsriGrid { corner, grid: grid.unwrap() }.write(&path).unwrap();
     path
 }
 
 fn flow(terrain: &Path, arguments: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_freshet-flood"));
-    command
-        .arg("flow")
-        .arg(terrain)
-        .arg("--output")
-        .arg(terrain.with_extension("png"));
+    command.arg("flow").arg(terrain).arg("--output").arg(terrain.with_extension("png"));
     command.args(arguments.split_whitespace()).output().unwrap()
 }
 
@@ -46,17 +37,10 @@ fn read_map(terrain: &Path) -> FlowMap {
 #[test]
 fn a_canal_becomes_a_flow_map_and_a_table() {
     let terrain = canal("canal.asc");
-    let output = flow(
-        &terrain,
-        "--level 1 --inflow -20,-9:-20,9 --outflow 20,-9:20,9 --discharge 24",
-    );
+    let output = flow(&terrain, "--level 1 --inflow -20,-9:-20,9 --outflow 20,-9:20,9 --discharge 24");
     let table = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.success() && output.stderr.is_empty());
-    for line in [
-        "terrain     40 × 20 cells, 40 × 20 m",
-        "reach area  480 m²",
-        "mean speed  1.00 m/s",
-    ] {
+    for line in ["terrain     40 × 20 cells, 40 × 20 m", "reach area  480 m²", "mean speed  1.00 m/s"] {
         assert!(table.contains(line), "{table}");
     }
     // Manning: S = (u n / d^⅔)² = 3.57e-4, times 40 m.
@@ -76,10 +60,7 @@ fn a_canal_becomes_a_flow_map_and_a_table() {
 fn sections_may_be_in_map_coordinates() {
     let terrain = canal("canal_on_the_map.asc");
     let sections = "--inflow 1035,2000:1035,2020 --outflow 1010,2000:1010,2020 --map-coordinates";
-    let output = flow(
-        &terrain,
-        &format!("--level 1 --discharge 12 --manning 0.05 {sections}"),
-    );
+    let output = flow(&terrain, &format!("--level 1 --discharge 12 --manning 0.05 {sections}"));
     assert!(output.status.success());
     let velocity = read_map(&terrain).velocity;
     assert_relative_eq!(velocity.sample(Vec2::ZERO).x, -0.5, epsilon = 1e-4);
@@ -91,31 +72,19 @@ fn errors_go_to_stderr_and_name_things() {
     let terrain = canal("canal_with_errors.asc");
     let valid = "--inflow -20,-9:-20,9 --outflow 20,-9:20,9";
     for (arguments, code, expected) in [
-        (
-            format!("--level 1 --discharge -3 {valid}"),
-            1,
-            "canal_with_errors.asc",
-        ),
+        (format!("--level 1 --discharge -3 {valid}"), 1, "canal_with_errors.asc"),
         (
             format!("--level 1 --discharge -3 {valid}"),
             1,
             "the discharge must be a finite number of m³/s above zero, not -3",
         ),
-        (
-            format!("--level -5 --discharge 3 {valid}"),
-            1,
-            "under the water level of -5 m",
-        ),
+        (format!("--level -5 --discharge 3 {valid}"), 1, "under the water level of -5 m"),
         (
             "--level 1 --discharge 3 --inflow -30,0:-30,9 --outflow 20,-9:20,9".into(),
             1,
             "the inflow section from (-30, 0) to (-30, 9) crosses no water",
         ),
-        (
-            "--level 1 --discharge 3 --inflow -30,0 --outflow 20,-9:20,9".into(),
-            2,
-            "expected two points X,Z:X,Z",
-        ),
+        ("--level 1 --discharge 3 --inflow -30,0 --outflow 20,-9:20,9".into(), 2, "expected two points X,Z:X,Z"),
     ] {
         let output = flow(&terrain, &arguments);
         let message = String::from_utf8(output.stderr).unwrap();
@@ -126,9 +95,5 @@ fn errors_go_to_stderr_and_name_things() {
     let missing = terrain.with_file_name("no_such.asc");
     let output = flow(&missing, &format!("--level 1 --discharge 3 {valid}"));
     assert_eq!(output.status.code(), Some(1));
-    assert!(
-        String::from_utf8(output.stderr)
-            .unwrap()
-            .contains("no_such.asc: No such file")
-    );
+    assert!(String::from_utf8(output.stderr).unwrap().contains("no_such.asc: No such file"));
 }

@@ -24,11 +24,7 @@ fn message(text: &str) -> String {
 
 #[test]
 fn every_spelling_gives_the_same_grid() {
-    let expected = (
-        dvec2(10.0, 20.0),
-        2.0,
-        vec![1.0, -2.5, 999.0, 4e2, 0.0, 6.0],
-    );
+    let expected = (dvec2(10.0, 20.0), 2.0, vec![1.0, -2.5, 999.0, 4e2, 0.0, 6.0]);
     let values = "1 -2.5 -9999 4e2 0 6";
     for text in [
         format!("{HEADER}{values}"),
@@ -40,10 +36,7 @@ fn every_spelling_gives_the_same_grid() {
         // Lines of an old Macintosh.
         format!("{HEADER}{values}").replace('\n', "\r"),
         // The centre of the lower-left cell; corner and centre mixed.
-        HEADER
-            .replace("xllcorner 10", "xllcenter 11")
-            .replace("yllcorner 20", "YLLCENTER 21")
-            + values,
+        HEADER.replace("xllcorner 10", "xllcenter 11").replace("yllcorner 20", "YLLCENTER 21") + values,
         HEADER.replace("xllcorner 10", "XLLCenter 11") + values,
         HEADER.replace("cellsize 2", "DX 2\nDY 2.0") + values,
         // Decimal commas.
@@ -52,9 +45,7 @@ fn every_spelling_gives_the_same_grid() {
         format!("{HEADER}NODATA_value -1\n1 -2.5 -1.0 4e2 0 6"),
         format!("{HEADER}nodata_value nan\n1 -2.5 NaN 4e2 0 6"),
         format!("{HEADER}1 -2.5 -nan(ind) 4e2 0 6"),
-        format!(
-            "{HEADER}NODATA_VALUE -1.7976931348623157e308\n1 -2.5 -1.797693134862315e308 4e2 0 6"
-        ),
+        format!("{HEADER}NODATA_VALUE -1.7976931348623157e308\n1 -2.5 -1.797693134862315e308 4e2 0 6"),
     ] {
         assert_eq!(read(&text), expected, "{text:?}");
     }
@@ -66,17 +57,13 @@ fn rows_run_from_north_to_south() {
     assert_eq!(esri.grid.get(uvec2(0, 0)), Some(&1.0));
     assert_eq!(esri.grid.get(uvec2(2, 1)), Some(&6.0));
     // The centre of the map's cell in the north-west.
-    assert_eq!(
-        esri.local_from_map(dvec2(11.0, 23.0)),
-        esri.grid.position(uvec2(0, 0))
-    );
+    assert_eq!(esri.local_from_map(dvec2(11.0, 23.0)), esri.grid.position(uvec2(0, 0)));
     assert_eq!(esri.map_from_local(vec2(-3.0, 2.0)), esri.corner);
 }
 
 #[test]
 fn errors_name_line_expectation_and_finding() {
-    let keys =
-        "ncols, nrows, xllcorner, yllcorner, xllcenter, yllcenter, cellsize, dx, dy, nodata_value";
+    let keys = "ncols, nrows, xllcorner, yllcorner, xllcenter, yllcenter, cellsize, dx, dy, nodata_value";
     for (text, expected) in [
         (
             String::new(),
@@ -86,34 +73,13 @@ fn errors_name_line_expectation_and_finding() {
             format!("{HEADER}1 2 3\n4 5"),
             "line 7: expected 6 values (3 columns × 2 rows), found the end of the file after 5",
         ),
-        (
-            format!("{HEADER}1 2 3\n4 5 6\n7"),
-            "line 8: expected the end of the file after 6 values (3 × 2), found “7”",
-        ),
-        (
-            format!("{HEADER}1 2 x3\n4 5 6"),
-            "line 6: expected a number, found “x3”",
-        ),
-        (
-            format!("{HEADER}1 2 1e99"),
-            "line 6: expected a finite number, found “1e99”",
-        ),
-        (
-            format!("{HEADER}0 1.000,5"),
-            "line 6: expected a number, found “1.000,5”",
-        ),
-        (
-            HEADER.replace("ncols 3", "ncols 0"),
-            "line 1: expected a whole number from 1 to 4294967295, found “0”",
-        ),
-        (
-            HEADER.replace("nrows 2", "nrows 2.5"),
-            "line 2: expected a whole number from 1 to 4294967295, found “2.5”",
-        ),
-        (
-            HEADER.replace("nrows 2", "nrows -2"),
-            "line 2: expected a whole number from 1 to 4294967295, found “-2”",
-        ),
+        (format!("{HEADER}1 2 3\n4 5 6\n7"), "line 8: expected the end of the file after 6 values (3 × 2), found “7”"),
+        (format!("{HEADER}1 2 x3\n4 5 6"), "line 6: expected a number, found “x3”"),
+        (format!("{HEADER}1 2 1e99"), "line 6: expected a finite number, found “1e99”"),
+        (format!("{HEADER}0 1.000,5"), "line 6: expected a number, found “1.000,5”"),
+        (HEADER.replace("ncols 3", "ncols 0"), "line 1: expected a whole number from 1 to 4294967295, found “0”"),
+        (HEADER.replace("nrows 2", "nrows 2.5"), "line 2: expected a whole number from 1 to 4294967295, found “2.5”"),
+        (HEADER.replace("nrows 2", "nrows -2"), "line 2: expected a whole number from 1 to 4294967295, found “-2”"),
         (
             HEADER.replace("nrows 2\n", ""),
             "line 5: expected the header to give nrows, found none before the first value",
@@ -122,10 +88,7 @@ fn errors_name_line_expectation_and_finding() {
             HEADER.replace("yllcorner 20\n", ""),
             "line 5: expected the header to give yllcorner (or yllcenter), found none before the first value",
         ),
-        (
-            HEADER.replace("cellsize 2", "cellsize -2"),
-            "line 5: expected a cell size above zero, found “-2”",
-        ),
+        (HEADER.replace("cellsize 2", "cellsize -2"), "line 5: expected a cell size above zero, found “-2”"),
         (
             HEADER.replace("cellsize 2", "cellsize"),
             "line 6: expected a finite number for cellsize, found the end of the file",
@@ -138,18 +101,9 @@ fn errors_name_line_expectation_and_finding() {
             HEADER.replace("cellsize 2", "dx 2"),
             "line 6: expected the header to give cellsize (or dx and dy), found none before the first value",
         ),
-        (
-            format!("{HEADER}dx 2\n"),
-            "line 6: expected either cellsize or dx and dy, not both, found “2”",
-        ),
-        (
-            format!("{HEADER}xllcenter 2\n"),
-            "line 6: expected xllcorner or xllcenter, not both, found “2”",
-        ),
-        (
-            format!("{HEADER}NCOLS 3\n"),
-            "line 6: expected ncols only once, found “NCOLS”",
-        ),
+        (format!("{HEADER}dx 2\n"), "line 6: expected either cellsize or dx and dy, not both, found “2”"),
+        (format!("{HEADER}xllcenter 2\n"), "line 6: expected xllcorner or xllcenter, not both, found “2”"),
+        (format!("{HEADER}NCOLS 3\n"), "line 6: expected ncols only once, found “NCOLS”"),
         (
             format!("{HEADER}ncells 3\n"),
             &format!("line 6: expected a number or one of the keys {keys}, found “ncells”"),
@@ -161,9 +115,7 @@ fn errors_name_line_expectation_and_finding() {
 
 #[test]
 fn a_huge_header_costs_no_memory() {
-    let header = HEADER
-        .replace('3', "4000000000")
-        .replace("nrows 2", "nrows 4000000000");
+    let header = HEADER.replace('3', "4000000000").replace("nrows 2", "nrows 4000000000");
     assert!(message(&format!("{header}1 2 3")).contains("found the end of the file after 3"));
 }
 
@@ -186,10 +138,7 @@ fn files_are_named_in_errors_and_written_back() {
     assert!(error.to_string().contains("no_such.asc"));
     std::fs::write(&path, "ncols x").unwrap();
     let error = EsriGrid::read(&path).unwrap_err().to_string();
-    assert!(
-        error.ends_with("round_trip.asc, line 1: expected a finite number for ncols, found “x”"),
-        "{error}"
-    );
+    assert!(error.ends_with("round_trip.asc, line 1: expected a finite number for ncols, found “x”"), "{error}");
     assert!(EsriGrid::read(folder).is_err());
 }
 
@@ -205,12 +154,8 @@ fn value() -> impl Strategy<Value = f32> {
 fn esri_grid() -> impl Strategy<Value = EsriGrid> {
     let size = (1_u32..12, 1_u32..12).prop_map(UVec2::from);
     (size, 1e-3_f32..1e3, -1e7..1e7_f64, -1e7..1e7_f64).prop_flat_map(|(size, cell_size, x, y)| {
-        prop::collection::vec(value(), (size.x * size.y) as usize).prop_map(move |values| {
-            EsriGrid {
-                corner: dvec2(x, y),
-                grid: Grid::new(size, cell_size, values).unwrap(),
-            }
-        })
+        prop::collection::vec(value(), (size.x * size.y) as usize)
+            .prop_map(move |values| EsriGrid { corner: dvec2(x, y), grid: Grid::new(size, cell_size, values).unwrap() })
     })
 }
 
@@ -221,12 +166,8 @@ fn nearly_a_grid() -> impl Strategy<Value = String> {
         "-?[0-9]{1,12}([.,][0-9]{0,3})?(e-?[0-9]{1,3})?",
         "\\PC{0,3}",
     ];
-    prop::collection::vec((word, "[ \t\r\n]{1,2}"), 0..40).prop_map(|words| {
-        words
-            .into_iter()
-            .map(|(word, blank)| word + &blank)
-            .collect()
-    })
+    prop::collection::vec((word, "[ \t\r\n]{1,2}"), 0..40)
+        .prop_map(|words| words.into_iter().map(|(word, blank)| word + &blank).collect())
 }
 
 proptest! {

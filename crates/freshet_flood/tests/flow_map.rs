@@ -2,27 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is wrong")]
 
-use freshet_flood::flow_map::{
-    CELL_SIZE_KEY, Defaults, FlowMap, FlowMapError, LEVEL_KEY, MOST_CELLS, SCALE_KEY,
-};
+use freshet_flood::flow_map::{CELL_SIZE_KEY, Defaults, FlowMap, FlowMapError, LEVEL_KEY, MOST_CELLS, SCALE_KEY};
 use freshet_hydro::grid::Grid;
 use glam::{Vec2, uvec2, vec2};
 use png::{BitDepth, ColorType};
 use proptest::prelude::*;
 
-const PAINTED: Defaults = Defaults {
-    scale: Some(2.0),
-    cell_size: Some(0.5),
-};
+const PAINTED: Defaults = Defaults { scale: Some(2.0), cell_size: Some(0.5) };
 
 /// A picture of one row of pixels, as a painter's program would write it.
-fn picture(
-    color: ColorType,
-    depth: BitDepth,
-    width: u32,
-    data: &[u8],
-    text: &[(&str, &str)],
-) -> Vec<u8> {
+fn picture(color: ColorType, depth: BitDepth, width: u32, data: &[u8], text: &[(&str, &str)]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, 1);
     encoder.set_color(color);
@@ -31,9 +20,7 @@ fn picture(
         encoder.set_palette(&[128, 128, 0, 255, 1, 0][..]);
     }
     for (key, text) in text {
-        encoder
-            .add_text_chunk(key.to_string(), text.to_string())
-            .unwrap();
+        encoder.add_text_chunk(key.to_string(), text.to_string()).unwrap();
     }
     let mut writer = encoder.write_header().unwrap();
     writer.write_image_data(data).unwrap();
@@ -42,10 +29,7 @@ fn picture(
 }
 
 fn velocities(bytes: &[u8], defaults: Defaults) -> Vec<Vec2> {
-    FlowMap::decode(bytes, defaults)
-        .unwrap()
-        .velocity
-        .into_values()
+    FlowMap::decode(bytes, defaults).unwrap().velocity.into_values()
 }
 
 fn message(bytes: &[u8], defaults: Defaults) -> String {
@@ -55,18 +39,9 @@ fn message(bytes: &[u8], defaults: Defaults) -> String {
 #[test]
 fn red_flows_east_and_green_flows_south() {
     let east_south_still_least = [255, 128, 0, 128, 255, 0, 128, 128, 0, 0, 1, 0];
-    let bytes = picture(
-        ColorType::Rgb,
-        BitDepth::Eight,
-        4,
-        &east_south_still_least,
-        &[],
-    );
+    let bytes = picture(ColorType::Rgb, BitDepth::Eight, 4, &east_south_still_least, &[]);
     let map = FlowMap::decode(&bytes, PAINTED).unwrap();
-    assert_eq!(
-        (map.scale, map.level, map.velocity.cell_size()),
-        (2.0, None, 0.5)
-    );
+    assert_eq!((map.scale, map.level, map.velocity.cell_size()), (2.0, None, 0.5));
     let expected = [vec2(2.0, 0.0), vec2(0.0, 2.0), Vec2::ZERO, vec2(-2.0, -2.0)];
     assert_eq!(map.velocity.values(), expected);
 }
@@ -78,13 +53,7 @@ fn sixteen_bits_transparency_and_palettes() {
     assert_eq!(velocities(&bytes, PAINTED), [Vec2::ZERO, vec2(2.0, -2.0)]);
 
     // Programs blacken what is fully transparent: that must not become a torrent to the north-west.
-    let bytes = picture(
-        ColorType::Rgba,
-        BitDepth::Eight,
-        2,
-        &[0, 0, 0, 0, 255, 128, 0, 9],
-        &[],
-    );
+    let bytes = picture(ColorType::Rgba, BitDepth::Eight, 2, &[0, 0, 0, 0, 255, 128, 0, 9], &[]);
     assert_eq!(velocities(&bytes, PAINTED), [Vec2::ZERO, vec2(2.0, 0.0)]);
     let data = [0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 0x80, 0, 0, 0, 0, 1];
     let bytes = picture(ColorType::Rgba, BitDepth::Sixteen, 2, &data, &[]);
@@ -96,11 +65,7 @@ fn sixteen_bits_transparency_and_palettes() {
 
 #[test]
 fn the_file_has_precedence_over_the_defaults() {
-    let text = [
-        (SCALE_KEY, "4"),
-        (CELL_SIZE_KEY, "8.5"),
-        (LEVEL_KEY, "-1.25"),
-    ];
+    let text = [(SCALE_KEY, "4"), (CELL_SIZE_KEY, "8.5"), (LEVEL_KEY, "-1.25")];
     let bytes = picture(ColorType::Rgb, BitDepth::Eight, 1, &[255, 128, 0], &text);
     for defaults in [PAINTED, Defaults::default()] {
         let map = FlowMap::decode(&bytes, defaults).unwrap();
@@ -112,34 +77,20 @@ fn the_file_has_precedence_over_the_defaults() {
 #[test]
 fn errors_name_what_is_wrong() {
     let painted = |text| picture(ColorType::Rgb, BitDepth::Eight, 1, &[255, 128, 0], text);
-    let no_scale = Defaults {
-        scale: None,
-        ..PAINTED
-    };
+    let no_scale = Defaults { scale: None, ..PAINTED };
     assert_eq!(
         message(&painted(&[]), no_scale),
         "the flow map's “freshet scale m/s” must be a number above zero, in the file or given with it, not missing"
     );
-    let no_cell_size = Defaults {
-        cell_size: None,
-        ..PAINTED
-    };
-    assert!(
-        message(&painted(&[]), no_cell_size).contains("cell size m” must be a number above zero")
-    );
-    let backwards = Defaults {
-        scale: Some(-1.0),
-        ..PAINTED
-    };
+    let no_cell_size = Defaults { cell_size: None, ..PAINTED };
+    assert!(message(&painted(&[]), no_cell_size).contains("cell size m” must be a number above zero"));
+    let backwards = Defaults { scale: Some(-1.0), ..PAINTED };
     assert!(message(&painted(&[]), backwards).ends_with("not -1"));
     assert!(message(&painted(&[(SCALE_KEY, "fast")]), PAINTED).ends_with("not “fast”"));
     assert!(message(&painted(&[(LEVEL_KEY, "inf")]), PAINTED).contains("finite number, not “inf”"));
 
     let grey = picture(ColorType::Grayscale, BitDepth::Eight, 1, &[128], &[]);
-    assert!(matches!(
-        FlowMap::decode(&grey, PAINTED),
-        Err(FlowMapError::Grey)
-    ));
+    assert!(matches!(FlowMap::decode(&grey, PAINTED), Err(FlowMapError::Grey)));
     assert!(message(b"GIF89a", PAINTED).starts_with("not an intact PNG picture"));
     let torn = painted(&[]);
     assert!(message(&torn[..torn.len() - 20], PAINTED).starts_with("not an intact PNG picture"));
@@ -148,47 +99,18 @@ fn errors_name_what_is_wrong() {
     assert!(message(&wide, PAINTED).starts_with("8193 × 1 cells are too many"));
 
     let velocity = Grid::new(uvec2(1, 1), 1.0, vec![Vec2::ONE]).unwrap();
-    let map = FlowMap {
-        velocity,
-        scale: 0.0,
-        level: None,
-    };
-    assert!(
-        map.encode()
-            .unwrap_err()
-            .to_string()
-            .contains("“freshet scale m/s”")
-    );
-    let map = FlowMap {
-        scale: 1.0,
-        level: Some(f32::NAN),
-        ..map
-    };
-    assert!(
-        map.encode()
-            .unwrap_err()
-            .to_string()
-            .contains("“freshet level m”")
-    );
+    let map = FlowMap { velocity, scale: 0.0, level: None };
+    assert!(map.encode().unwrap_err().to_string().contains("“freshet scale m/s”"));
+    let map = FlowMap { scale: 1.0, level: Some(f32::NAN), ..map };
+    assert!(map.encode().unwrap_err().to_string().contains("“freshet level m”"));
 }
 
 #[test]
 fn still_water_out_of_range_and_nan_are_stored_sensibly() {
-    let velocity = Grid::new(
-        uvec2(3, 1),
-        1.0,
-        vec![Vec2::ZERO, vec2(9.0, -9.0), vec2(f32::NAN, 0.0)],
-    );
-    let map = FlowMap {
-        scale: 1.0,
-        level: None,
-        velocity: velocity.unwrap(),
-    };
+    let velocity = Grid::new(uvec2(3, 1), 1.0, vec![Vec2::ZERO, vec2(9.0, -9.0), vec2(f32::NAN, 0.0)]);
+    let map = FlowMap { scale: 1.0, level: None, velocity: velocity.unwrap() };
     let expected = [Vec2::ZERO, vec2(1.0, -1.0), Vec2::ZERO];
-    assert_eq!(
-        velocities(&map.encode().unwrap(), Defaults::default()),
-        expected
-    );
+    assert_eq!(velocities(&map.encode().unwrap(), Defaults::default()), expected);
     let still = Grid::new(uvec2(1, 1), 1.0, vec![Vec2::ZERO]).unwrap();
     assert_eq!(FlowMap::new(still, None).scale, 1.0);
 }
@@ -202,12 +124,7 @@ fn files_are_named_in_errors() {
     map.write(&path).unwrap();
     assert_eq!(FlowMap::read(&path, Defaults::default()).unwrap(), map);
     std::fs::write(&path, "no picture").unwrap();
-    assert!(
-        FlowMap::read(&path, PAINTED)
-            .unwrap_err()
-            .to_string()
-            .contains("flow_map.png: not an")
-    );
+    assert!(FlowMap::read(&path, PAINTED).unwrap_err().to_string().contains("flow_map.png: not an"));
     let error = FlowMap::read(folder.join("no_such.png"), PAINTED).unwrap_err();
     assert!(matches!(&error, FlowMapError::Io { .. }) && error.to_string().contains("no_such.png"));
     assert!(map.write(folder.join("no_such_folder/flow.png")).is_err());

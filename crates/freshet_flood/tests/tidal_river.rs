@@ -7,9 +7,7 @@ use std::path::Path;
 use approx::assert_relative_eq;
 use freshet_flood::esri_ascii::EsriGrid;
 use freshet_flood::flow_map::{Defaults, FlowMap};
-use freshet_hydro::flow::{
-    FlowField, MINIMUM_DEPTH, Reach, Section, discharge_across, steady_flow,
-};
+use freshet_hydro::flow::{FlowField, MINIMUM_DEPTH, Reach, Section, discharge_across, steady_flow};
 use freshet_hydro::grid::Grid;
 use glam::{Vec2, vec2};
 
@@ -18,24 +16,16 @@ const LEVEL: f32 = 0.8;
 /// Discharge in m³/s at which the wide lower river runs at about 1 m/s.
 const DISCHARGE: f32 = 25.0;
 /// Where the water enters, below the confluence of the two upper arms, in local metres from west to east.
-const INFLOW: Section = Section {
-    from: vec2(-56.0, -88.0),
-    to: vec2(-28.0, -88.0),
-};
+const INFLOW: Section = Section { from: vec2(-56.0, -88.0), to: vec2(-28.0, -88.0) };
 /// Where it leaves, on the southern edge of the terrain, in local metres from west to east.
-const OUTFLOW: Section = Section {
-    from: vec2(-24.0, 452.0),
-    to: vec2(20.0, 452.0),
-};
+const OUTFLOW: Section = Section { from: vec2(-24.0, 452.0), to: vec2(20.0, 452.0) };
 
 fn assets() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/terrain")
 }
 
 fn river() -> (Grid<f32>, FlowField) {
-    let bed = EsriGrid::read(assets().join("tidal_river_2m.asc"))
-        .unwrap()
-        .grid;
+    let bed = EsriGrid::read(assets().join("tidal_river_2m.asc")).unwrap().grid;
     let flow = steady_flow(&bed, LEVEL, &Reach::new(INFLOW, OUTFLOW, DISCHARGE)).unwrap();
     (bed, flow)
 }
@@ -63,16 +53,8 @@ fn discharge_is_the_same_all_along_the_river() {
         let seen = discharge_across(flow.velocity(), &bed, LEVEL, section).abs();
         assert_relative_eq!(seen, DISCHARGE, max_relative = 0.05);
     }
-    assert_relative_eq!(
-        flow.discharge_through(&INFLOW),
-        DISCHARGE,
-        max_relative = 1e-5
-    );
-    assert_relative_eq!(
-        flow.discharge_through(&OUTFLOW),
-        DISCHARGE,
-        max_relative = 1e-5
-    );
+    assert_relative_eq!(flow.discharge_through(&INFLOW), DISCHARGE, max_relative = 1e-5);
+    assert_relative_eq!(flow.discharge_through(&OUTFLOW), DISCHARGE, max_relative = 1e-5);
 }
 
 #[test]
@@ -86,10 +68,7 @@ fn land_and_creeks_stay_still_and_banks_slow_the_water() {
             assert_eq!(*velocity, Vec2::ZERO, "{cell}");
         }
         // No wild speeds where the water is thin.
-        assert!(
-            depth.is_nan() || depth > 0.3 || velocity.length() < 0.6 * max_speed,
-            "{cell}"
-        );
+        assert!(depth.is_nan() || depth > 0.3 || velocity.length() < 0.6 * max_speed, "{cell}");
     }
     // A creek that comes in from the north at the top of the great bend, and the arms above the inflow.
     let creek = flow.velocity().sample(vec2(61.0, 140.0));
@@ -104,10 +83,7 @@ fn the_flow_map_in_the_assets_is_this_flow() {
     let (bed, flow) = river();
     let map = FlowMap::read(assets().join("tidal_river_flow.png"), Defaults::default()).unwrap();
     assert_eq!(map.level, Some(LEVEL));
-    assert_eq!(
-        (map.velocity.size(), map.velocity.cell_size()),
-        (bed.size(), bed.cell_size())
-    );
+    assert_eq!((map.velocity.size(), map.velocity.cell_size()), (bed.size(), bed.cell_size()));
     for (map, flow) in map.velocity.values().iter().zip(flow.velocity().values()) {
         assert!(map.abs_diff_eq(*flow, 1e-3), "{map} {flow}");
     }

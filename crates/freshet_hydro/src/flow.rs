@@ -57,12 +57,7 @@ impl Reach {
 
     /// A reach with the roughness of a natural channel, carrying `discharge` m³/s (above zero).
     pub fn new(inflow: Section, outflow: Section, discharge: f32) -> Self {
-        Self {
-            inflow,
-            outflow,
-            discharge,
-            manning: Self::NATURAL_CHANNEL,
-        }
+        Self { inflow, outflow, discharge, manning: Self::NATURAL_CHANNEL }
     }
 }
 
@@ -117,9 +112,7 @@ pub enum FlowError {
     #[error("no water connects the inflow section to the outflow section")]
     NotConnected,
     /// Water of the reach lies on both sides of a section.
-    #[error(
-        "water passes round the {0} section: it must cross the whole channel, from bank to bank"
-    )]
+    #[error("water passes round the {0} section: it must cross the whole channel, from bank to bank")]
     PassedRound(End),
     /// The iteration for the head did not settle; the data are out of the range of the method.
     #[error("the head did not settle within {0} iterations")]
@@ -150,11 +143,7 @@ pub fn steady_flow(bed: &Grid<f32>, level: f32, reach: &Reach) -> Result<FlowFie
         return Err(FlowError::Dry(level));
     }
     let network = Network::new(&wet, &reach.inflow, &reach.outflow)?;
-    let depths: Vec<f64> = network
-        .cells
-        .iter()
-        .map(|&cell| f64::from(level - bed.values()[cell]))
-        .collect();
+    let depths: Vec<f64> = network.cells.iter().map(|&cell| f64::from(level - bed.values()[cell])).collect();
     let head = Head::with_unit_drop(&network, &depths)?;
     Ok(FlowField::new(bed, reach, &network, &depths, &head))
 }

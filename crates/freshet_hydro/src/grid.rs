@@ -60,22 +60,14 @@ impl<T> Grid<T> {
             let found = values.len();
             return Err(GridError::Length { size, found });
         }
-        Ok(Self {
-            size,
-            cell_size,
-            values,
-        })
+        Ok(Self { size, cell_size, values })
     }
 
     /// Makes a grid by calling `value` for every cell (column, row), row by row from the north-west corner.
     ///
     /// # Errors
     /// [`GridError`] as for [`Grid::new`].
-    pub fn from_fn(
-        size: UVec2,
-        cell_size: f32,
-        value: impl FnMut(UVec2) -> T,
-    ) -> Result<Self, GridError> {
+    pub fn from_fn(size: UVec2, cell_size: f32, value: impl FnMut(UVec2) -> T) -> Result<Self, GridError> {
         Self::new(size, cell_size, cells(size).map(value).collect())
     }
 
@@ -111,9 +103,7 @@ impl<T> Grid<T> {
 
     /// Where in [`Grid::values`] the cell (column, row) is stored, or `None` outside the grid.
     pub fn index(&self, cell: UVec2) -> Option<usize> {
-        cell.cmplt(self.size)
-            .all()
-            .then(|| cell.y as usize * self.size.x as usize + cell.x as usize)
+        cell.cmplt(self.size).all().then(|| cell.y as usize * self.size.x as usize + cell.x as usize)
     }
 
     /// The value of the cell (column, row), or `None` outside the grid.
@@ -143,17 +133,12 @@ impl<T> Grid<T> {
     /// A cell owns its western and northern edge, so the grid's eastern and southern edges lie outside.
     pub fn cell_at(&self, point: Vec2) -> Option<UVec2> {
         let cell = (point / self.cell_size + self.size.as_vec2() / 2.0).floor();
-        (cell.cmpge(Vec2::ZERO).all() && cell.cmplt(self.size.as_vec2()).all())
-            .then(|| cell.as_uvec2())
+        (cell.cmpge(Vec2::ZERO).all() && cell.cmplt(self.size.as_vec2()).all()).then(|| cell.as_uvec2())
     }
 
     /// A grid of the same shape with every value passed through `value`.
     pub fn map<U>(&self, value: impl FnMut(&T) -> U) -> Grid<U> {
-        Grid {
-            size: self.size,
-            cell_size: self.cell_size,
-            values: self.values.iter().map(value).collect(),
-        }
+        Grid { size: self.size, cell_size: self.cell_size, values: self.values.iter().map(value).collect() }
     }
 }
 
@@ -176,8 +161,7 @@ where
     /// WGSL's `mix` may be evaluated as a·(1 − t) + b·t, which rounds differently: write `lerp` out.
     pub fn sample(&self, point: Vec2) -> T {
         let last = self.size - 1;
-        let p = (point / self.cell_size + (self.size.as_vec2() / 2.0 - 0.5))
-            .clamp(Vec2::ZERO, last.as_vec2());
+        let p = (point / self.cell_size + (self.size.as_vec2() / 2.0 - 0.5)).clamp(Vec2::ZERO, last.as_vec2());
         let i = p.floor().as_uvec2();
         let j = (i + 1).min(last);
         let t = p - p.floor();
@@ -219,10 +203,7 @@ mod tests {
         assert_eq!(new(uvec2(1, 1), 0.0, 1), Err(GridError::CellSize(0.0)));
         assert!(new(uvec2(1, 1), f32::NAN, 1).is_err());
         let message = new(uvec2(4, 3), 1.0, 11).map_err(|error| error.to_string());
-        assert_eq!(
-            message,
-            Err("4 columns × 3 rows need 12 values, not 11".into())
-        );
+        assert_eq!(message, Err("4 columns × 3 rows need 12 values, not 11".into()));
         // A product that wraps around in 32 bits must not pass for a small one.
         assert!(new(UVec2::splat(1 << 16), 1.0, 0).is_err());
     }

@@ -5,9 +5,7 @@
 use std::f32::consts::{FRAC_PI_4, FRAC_PI_6};
 
 use approx::assert_relative_eq;
-use freshet_hydro::flow::{
-    End, FlowError, FlowField, MINIMUM_DEPTH, Reach, Section, discharge_across, steady_flow,
-};
+use freshet_hydro::flow::{End, FlowError, FlowField, MINIMUM_DEPTH, Reach, Section, discharge_across, steady_flow};
 use freshet_hydro::grid::Grid;
 use glam::{UVec2, Vec2, uvec2, vec2};
 
@@ -37,21 +35,13 @@ fn flow(bed: &Grid<f32>, inflow: Section, outflow: Section) -> FlowField {
 fn integral(from: f32, to: f32, f: impl Fn(f32) -> f32) -> f32 {
     let steps = 1000;
     let width = (to - from) / steps as f32;
-    (0..steps)
-        .map(|step| f(from + (step as f32 + 0.5) * width) * width)
-        .sum()
+    (0..steps).map(|step| f(from + (step as f32 + 0.5) * width) * width).sum()
 }
 
 #[test]
 fn uniform_flow_in_a_rectangular_channel_obeys_manning() {
     let (depth, width, length) = (2.5_f32, 20.0, 160.0);
-    let bed = terrain(uvec2(80, 30), 2.0, |p| {
-        if p.y.abs() < width / 2.0 {
-            -depth
-        } else {
-            LAND
-        }
-    });
+    let bed = terrain(uvec2(80, 30), 2.0, |p| if p.y.abs() < width / 2.0 { -depth } else { LAND });
     // On the western and eastern edges of the grid.
     let field = flow(&bed, across_x(-80.0), across_x(80.0));
     let slope = field.head_drop() / length;
@@ -60,21 +50,14 @@ fn uniform_flow_in_a_rectangular_channel_obeys_manning() {
     for (cell, &velocity) in field.velocity().iter() {
         let wet = bed.get(cell).unwrap() < &0.0;
         let expected = if wet { vec2(speed, 0.0) } else { Vec2::ZERO };
-        assert!(
-            velocity.abs_diff_eq(expected, 1e-4 * speed),
-            "{cell}: {velocity}"
-        );
+        assert!(velocity.abs_diff_eq(expected, 1e-4 * speed), "{cell}: {velocity}");
     }
     assert_relative_eq!(field.max_speed(), speed, max_relative = 1e-4);
     assert_relative_eq!(field.mean_speed(), speed, max_relative = 1e-4);
     assert_relative_eq!(field.area(), width * length);
     // Head falls linearly, and half a cell beside the inflow it is 1/160 below that of the section.
     let first = field.head().sample(vec2(-79.0, 0.0));
-    assert_relative_eq!(
-        first / field.head_drop(),
-        1.0 - 1.0 / length,
-        max_relative = 1e-4
-    );
+    assert_relative_eq!(first / field.head_drop(), 1.0 - 1.0 / length, max_relative = 1e-4);
     assert!(field.head().sample(vec2(0.0, 20.0)).is_nan());
 }
 
@@ -100,40 +83,12 @@ fn roughness_changes_the_head_and_discharge_scales_the_speed() {
     let bed = terrain(uvec2(30, 10), 1.0, |p| 0.5 * p.y.abs() - 2.0);
     let reach = Reach::new(across_x(-15.0), across_x(15.0), 5.0);
     let base = steady_flow(&bed, 0.0, &reach).unwrap();
-    let rough = steady_flow(
-        &bed,
-        0.0,
-        &Reach {
-            manning: 0.06,
-            ..reach
-        },
-    )
-    .unwrap();
-    let double = steady_flow(
-        &bed,
-        0.0,
-        &Reach {
-            discharge: 10.0,
-            ..reach
-        },
-    )
-    .unwrap();
-    assert_relative_eq!(
-        rough.head_drop(),
-        4.0 * base.head_drop(),
-        max_relative = 1e-5
-    );
-    assert_relative_eq!(
-        double.head_drop(),
-        4.0 * base.head_drop(),
-        max_relative = 1e-5
-    );
+    let rough = steady_flow(&bed, 0.0, &Reach { manning: 0.06, ..reach }).unwrap();
+    let double = steady_flow(&bed, 0.0, &Reach { discharge: 10.0, ..reach }).unwrap();
+    assert_relative_eq!(rough.head_drop(), 4.0 * base.head_drop(), max_relative = 1e-5);
+    assert_relative_eq!(double.head_drop(), 4.0 * base.head_drop(), max_relative = 1e-5);
     assert_relative_eq!(rough.max_speed(), base.max_speed(), max_relative = 1e-5);
-    assert_relative_eq!(
-        double.max_speed(),
-        2.0 * base.max_speed(),
-        max_relative = 1e-5
-    );
+    assert_relative_eq!(double.max_speed(), 2.0 * base.max_speed(), max_relative = 1e-5);
 }
 
 #[test]
@@ -157,11 +112,7 @@ fn a_channel_askew_to_the_grid_flows_as_a_straight_one() {
                     "{s} {offset}: {velocity} instead of {expected}"
                 );
             }
-            assert_relative_eq!(
-                field.discharge_through(&at(s)),
-                DISCHARGE,
-                max_relative = 1e-5
-            );
+            assert_relative_eq!(field.discharge_through(&at(s)), DISCHARGE, max_relative = 1e-5);
             let seen = discharge_across(field.velocity(), &bed, 0.0, &at(s));
             assert_relative_eq!(seen, DISCHARGE, max_relative = tolerance);
         }
@@ -174,15 +125,10 @@ fn in_a_bend_the_inner_thread_is_the_faster() {
     let (inner, outer) = (30.0, 54.0);
     let depth = |r: f32| 0.02 * (r - inner) * (outer - r);
     let centre = vec2(-30.0, -30.0);
-    let bed = terrain(uvec2(70, 70), 1.0, |p| {
-        (-depth(p.distance(centre))).min(LAND)
-    });
+    let bed = terrain(uvec2(70, 70), 1.0, |p| (-depth(p.distance(centre))).min(LAND));
     let ray = |angle: f32| {
         let direction = Vec2::from_angle(angle);
-        section(
-            centre + direction * (inner - 3.0),
-            centre + direction * (outer + 3.0),
-        )
+        section(centre + direction * (inner - 3.0), centre + direction * (outer + 3.0))
     };
     let field = flow(&bed, ray(0.02), ray(1.55));
     let conveyance = integral(inner, outer, |r| depth(r).powf(5.0 / 3.0) / r.sqrt());
@@ -192,16 +138,9 @@ fn in_a_bend_the_inner_thread_is_the_faster() {
             let velocity = field.velocity().sample(centre + direction * r);
             let speed = DISCHARGE * depth(r).powf(2.0 / 3.0) / r.sqrt() / conveyance;
             let expected = speed * direction.perp();
-            assert!(
-                velocity.abs_diff_eq(expected, 0.05 * speed),
-                "{angle} {r}: {velocity} instead of {expected}"
-            );
+            assert!(velocity.abs_diff_eq(expected, 0.05 * speed), "{angle} {r}: {velocity} instead of {expected}");
         }
-        assert_relative_eq!(
-            field.discharge_through(&ray(angle)),
-            DISCHARGE,
-            max_relative = 1e-5
-        );
+        assert_relative_eq!(field.discharge_through(&ray(angle)), DISCHARGE, max_relative = 1e-5);
         let seen = discharge_across(field.velocity(), &bed, 0.0, &ray(angle));
         assert_relative_eq!(seen, DISCHARGE, max_relative = 0.03);
     }
@@ -214,11 +153,7 @@ fn an_island_parts_the_discharge_and_a_dead_end_carries_none() {
         let channel = (-12.0..18.0).contains(&p.y);
         let island = p.x.abs() < 40.0 && (-6.0..6.0).contains(&p.y);
         let creek = (0.0..3.0).contains(&p.x) && p.y < 0.0;
-        if (channel || creek) && !island {
-            -2.0
-        } else {
-            LAND
-        }
+        if (channel || creek) && !island { -2.0 } else { LAND }
     });
     let field = flow(&bed, across_x(-60.0), across_x(60.0));
     let north = field.discharge_through(&section(vec2(20.0, 0.0), vec2(20.0, -30.0)));
@@ -229,15 +164,8 @@ fn an_island_parts_the_discharge_and_a_dead_end_carries_none() {
     assert!(creek.abs() < 1e-5 * DISCHARGE);
     assert!(field.velocity().sample(vec2(1.5, -20.0)).length() < 1e-3 * field.max_speed());
     // A ring around the fork lets out what comes in.
-    let corners = [
-        vec2(-50.0, -25.0),
-        vec2(-20.0, -25.0),
-        vec2(-20.0, 25.0),
-        vec2(-50.0, 25.0),
-    ];
-    let sum: f32 = (0..4)
-        .map(|side| field.discharge_through(&section(corners[side], corners[(side + 1) % 4])))
-        .sum();
+    let corners = [vec2(-50.0, -25.0), vec2(-20.0, -25.0), vec2(-20.0, 25.0), vec2(-50.0, 25.0)];
+    let sum: f32 = (0..4).map(|side| field.discharge_through(&section(corners[side], corners[(side + 1) % 4]))).sum();
     assert!(sum.abs() < 1e-5 * DISCHARGE);
 }
 
@@ -252,11 +180,7 @@ fn sections_cross_the_river_evenly() {
         assert!((found.from.x - middle).abs() <= 5.0);
         assert!(found.normal().abs_diff_eq(Vec2::X, 1e-3));
         assert!(found.length() > 19.0);
-        assert_relative_eq!(
-            field.discharge_through(found),
-            DISCHARGE,
-            max_relative = 1e-5
-        );
+        assert_relative_eq!(field.discharge_through(found), DISCHARGE, max_relative = 1e-5);
     }
 }
 
@@ -277,59 +201,22 @@ fn depth_without_data_or_below_the_minimum_is_land() {
 
 #[test]
 fn errors_name_what_is_wrong() {
-    let bed = terrain(uvec2(40, 20), 1.0, |p| {
-        if p.y.abs() < 4.0 && p.x != 0.5 {
-            -1.0
-        } else {
-            LAND
-        }
-    });
+    let bed = terrain(uvec2(40, 20), 1.0, |p| if p.y.abs() < 4.0 && p.x != 0.5 { -1.0 } else { LAND });
     let (west, east) = (across_x(-15.0), across_x(-5.0));
     let run = |level, reach: Reach| steady_flow(&bed, level, &reach).unwrap_err();
     let reach = Reach::new(west, east, 1.0);
 
     assert_eq!(run(f32::INFINITY, reach), FlowError::Level(f32::INFINITY));
-    assert_eq!(
-        run(
-            0.0,
-            Reach {
-                discharge: 0.0,
-                ..reach
-            }
-        ),
-        FlowError::Discharge(0.0)
-    );
-    assert_eq!(
-        run(
-            0.0,
-            Reach {
-                manning: -0.1,
-                ..reach
-            }
-        ),
-        FlowError::Manning(-0.1)
-    );
+    assert_eq!(run(0.0, Reach { discharge: 0.0, ..reach }), FlowError::Discharge(0.0));
+    assert_eq!(run(0.0, Reach { manning: -0.1, ..reach }), FlowError::Manning(-0.1));
     assert_eq!(run(-2.0, reach), FlowError::Dry(-2.0));
     // A dam stands across x = 0.5.
-    let beyond = Reach {
-        outflow: across_x(10.0),
-        ..reach
-    };
+    let beyond = Reach { outflow: across_x(10.0), ..reach };
     assert_eq!(run(0.0, beyond), FlowError::NotConnected);
-    let short = Reach {
-        outflow: section(vec2(-5.0, -9.0), vec2(-5.0, 2.0)),
-        ..reach
-    };
+    let short = Reach { outflow: section(vec2(-5.0, -9.0), vec2(-5.0, 2.0)), ..reach };
     assert_eq!(run(0.0, short), FlowError::PassedRound(End::Outflow));
     let off = section(vec2(-15.0, 6.0), vec2(-15.0, 9.0));
-    let message = run(
-        0.0,
-        Reach {
-            inflow: off,
-            ..reach
-        },
-    )
-    .to_string();
+    let message = run(0.0, Reach { inflow: off, ..reach }).to_string();
     assert_eq!(
         message,
         "the inflow section from (-15, 6) to (-15, 9) crosses no water; \

@@ -24,7 +24,5 @@ pub fn workspace() -> &'static Path {
 /// Waits for a program that shares this one's terminal.
 pub fn status(command: &mut Command) -> Result<ExitStatus> {
     let program = command.get_program().to_string_lossy().into_owned();
-    command
-        .status()
-        .with_context(|| format!("starting {program}"))
+    command.status().with_context(|| format!("starting {program}"))
 }

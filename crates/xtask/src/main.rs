@@ -64,10 +64,7 @@ mod tests {
     #[test]
     fn the_example_gets_every_argument_after_river() {
         let xtask = Xtask::try_parse_from(["xtask", "river", "--help", "--frames", "9"]);
-        let Ok(Xtask {
-            task: Task::River { args },
-        }) = xtask
-        else {
+        let Ok(Xtask { task: Task::River { args } }) = xtask else {
             panic!("arguments of the example are refused");
         };
         assert_eq!(args, ["--help", "--frames", "9"]);

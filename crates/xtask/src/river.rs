@@ -11,14 +11,7 @@ pub fn run(args: Vec<OsString>) -> Result<ExitCode> {
     setup::run()?;
     let status = command::status(
         command::cargo()
-            .args([
-                "run",
-                "--package",
-                "bevy_freshet",
-                "--example",
-                "river",
-                "--",
-            ])
+            .args(["run", "--package", "bevy_freshet", "--example", "river", "--"])
             .args(with_output(args, setup::has_display())),
     )?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());
@@ -27,9 +20,7 @@ pub fn run(args: Vec<OsString>) -> Result<ExitCode> {
 
 /// Without a display to open a window on, the picture goes to a file, unless `args` already names one.
 fn with_output(mut args: Vec<OsString>, display: bool) -> Vec<OsString> {
-    let named = args
-        .iter()
-        .any(|arg| arg == "--out" || arg.as_encoded_bytes().starts_with(b"--out="));
+    let named = args.iter().any(|arg| arg == "--out" || arg.as_encoded_bytes().starts_with(b"--out="));
     let asks_for_help = args.iter().any(|arg| arg == "--help" || arg == "-h");
     if !display && !named && !asks_for_help {
         args.extend(["--out", "river.png"].map(OsString::from));
@@ -47,10 +38,7 @@ mod tests {
 
     #[test]
     fn draws_into_a_file_only_without_a_display() {
-        assert_eq!(
-            output(&["--frames", "9"], false),
-            ["--frames", "9", "--out", "river.png"]
-        );
+        assert_eq!(output(&["--frames", "9"], false), ["--frames", "9", "--out", "river.png"]);
         assert_eq!(output(&["--frames", "9"], true), ["--frames", "9"]);
     }
 

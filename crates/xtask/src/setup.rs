@@ -86,16 +86,11 @@ fn carry_out(step: &Step, rights: Rights) -> Result<()> {
         // `tee` echoes what it writes, which has been shown already.
         command.stdin(Stdio::piped()).stdout(Stdio::null());
     }
-    let mut child = command
-        .spawn()
-        .with_context(|| format!("starting {line}"))?;
+    let mut child = command.spawn().with_context(|| format!("starting {line}"))?;
     if let Some((text, mut pipe)) = step.input.as_ref().zip(child.stdin.take()) {
-        pipe.write_all(text.as_bytes())
-            .with_context(|| format!("feeding {line}"))?;
+        pipe.write_all(text.as_bytes()).with_context(|| format!("feeding {line}"))?;
     }
-    let status = child
-        .wait()
-        .with_context(|| format!("waiting for {line}"))?;
+    let status = child.wait().with_context(|| format!("waiting for {line}"))?;
     if !status.success() {
         bail!("{status} from {line}");
     }

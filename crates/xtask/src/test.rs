@@ -17,61 +17,28 @@ struct Step {
 /// Quick checks first; those that compile the same things the same way follow one another.
 const STEPS: [Step; 6] = [
     Step::new("format", &["fmt", "--all", "--check"]),
-    Step::new(
-        "lints",
-        &[
-            "clippy",
-            "--workspace",
-            "--all-targets",
-            "--all-features",
-            "--",
-            "-D",
-            "warnings",
-        ],
-    ),
+    Step::new("lints", &["clippy", "--workspace", "--all-targets", "--all-features", "--", "-D", "warnings"]),
     // The library alone: dev-dependencies could switch on what a user of the bare plugin does not have.
     Step::new(
         "lints without features",
-        &[
-            "clippy",
-            "--package",
-            "bevy_freshet",
-            "--lib",
-            "--no-default-features",
-            "--",
-            "-D",
-            "warnings",
-        ],
+        &["clippy", "--package", "bevy_freshet", "--lib", "--no-default-features", "--", "-D", "warnings"],
     ),
     Step {
         rustdocflags: Some("-D warnings"),
-        ..Step::new(
-            "documentation",
-            &["doc", "--workspace", "--all-features", "--no-deps"],
-        )
+        ..Step::new("documentation", &["doc", "--workspace", "--all-features", "--no-deps"])
     },
     Step::new("tests", &["test", "--workspace", "--all-features"]),
-    Step::new(
-        "tests without features",
-        &["test", "--package", "bevy_freshet", "--no-default-features"],
-    ),
+    Step::new("tests without features", &["test", "--package", "bevy_freshet", "--no-default-features"]),
 ];
 
 impl Step {
     const fn new(name: &'static str, args: &'static [&'static str]) -> Self {
-        Self {
-            name,
-            args,
-            rustdocflags: None,
-        }
+        Self { name, args, rustdocflags: None }
     }
 
     /// The command line as one would type it.
     fn line(&self) -> String {
-        let environment = self
-            .rustdocflags
-            .map(|flags| format!("RUSTDOCFLAGS='{flags}' "))
-            .unwrap_or_default();
+        let environment = self.rustdocflags.map(|flags| format!("RUSTDOCFLAGS='{flags}' ")).unwrap_or_default();
         format!("{environment}cargo {}", self.args.join(" "))
     }
 
@@ -120,9 +87,6 @@ mod tests {
     fn a_step_reads_as_one_would_type_it() {
         let lines = STEPS.map(|step| step.line());
         assert_eq!(lines[0], "cargo fmt --all --check");
-        assert_eq!(
-            lines[3],
-            "RUSTDOCFLAGS='-D warnings' cargo doc --workspace --all-features --no-deps"
-        );
+        assert_eq!(lines[3], "RUSTDOCFLAGS='-D warnings' cargo doc --workspace --all-features --no-deps");
     }
 }

@@ -31,36 +31,12 @@ struct Texture {
 }
 
 const TEXTURES: [Texture; 6] = [
-    Texture {
-        file: "bark.png",
-        paint: bark::bark,
-        step: 3,
-    },
-    Texture {
-        file: "grass.png",
-        paint: grass::grass,
-        step: 4,
-    },
-    Texture {
-        file: "leaves.png",
-        paint: leaves::leaves,
-        step: 1,
-    },
-    Texture {
-        file: "mud.png",
-        paint: mud::mud,
-        step: 3,
-    },
-    Texture {
-        file: "reed.png",
-        paint: reed::reed,
-        step: 1,
-    },
-    Texture {
-        file: "sand.png",
-        paint: sand::sand,
-        step: 3,
-    },
+    Texture { file: "bark.png", paint: bark::bark, step: 3 },
+    Texture { file: "grass.png", paint: grass::grass, step: 4 },
+    Texture { file: "leaves.png", paint: leaves::leaves, step: 1 },
+    Texture { file: "mud.png", paint: mud::mud, step: 3 },
+    Texture { file: "reed.png", paint: reed::reed, step: 1 },
+    Texture { file: "sand.png", paint: sand::sand, step: 3 },
 ];
 
 impl Texture {

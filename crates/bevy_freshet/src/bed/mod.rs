@@ -3,12 +3,7 @@ mod material;
 mod textures;
 
 use crate::body::WaterBed;
-use bevy::{
-    asset::embedded_asset,
-    ecs::relationship::Relationship,
-    prelude::*,
-    render::RenderApp,
-};
+use bevy::{asset::embedded_asset, ecs::relationship::Relationship, prelude::*, render::RenderApp};
 use material::{BedExtension, BedMaterial, GpuBed};
 
 /// Draws the [`WaterBed`] beside it, in pieces that are culled one by one. Each texture is optional: without it the

@@ -68,11 +68,7 @@ impl WaterBed {
     ///
     /// # Errors
     /// [`WaterBedError`] if size or cell size is zero, or no elevation is finite.
-    pub fn from_fn(
-        size: UVec2,
-        cell_size: f32,
-        mut elevation: impl FnMut(Vec2) -> f32,
-    ) -> Result<Self, WaterBedError> {
+    pub fn from_fn(size: UVec2, cell_size: f32, mut elevation: impl FnMut(Vec2) -> f32) -> Result<Self, WaterBedError> {
         let half = (size.as_vec2() - 1.0) * 0.5;
         Self::new(Grid::from_fn(size, cell_size, |cell| elevation((cell.as_vec2() - half) * cell_size))?)
     }

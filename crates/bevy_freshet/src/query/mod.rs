@@ -32,17 +32,14 @@ impl WaterQuery<'_, '_> {
     /// Where several waters lie above one another it is the lowest one whose surface is above the position, else the
     /// highest one below it: a swimmer in the lake under a hanging pond is in the lake.
     pub fn sample(&self, position: Vec3) -> Option<WaterSample> {
-        self.waters
-            .iter()
-            .filter_map(|(entity, water)| sample(entity, water, position.xz()))
-            .min_by(|a, b| {
-                let rank = |sample: &WaterSample| {
-                    let above = sample.height - position.y;
-                    (above < 0.0, above.abs())
-                };
-                let ((a_below, a_distance), (b_below, b_distance)) = (rank(a), rank(b));
-                a_below.cmp(&b_below).then(a_distance.total_cmp(&b_distance)).then(a.water.cmp(&b.water))
-            })
+        self.waters.iter().filter_map(|(entity, water)| sample(entity, water, position.xz())).min_by(|a, b| {
+            let rank = |sample: &WaterSample| {
+                let above = sample.height - position.y;
+                (above < 0.0, above.abs())
+            };
+            let ((a_below, a_distance), (b_below, b_distance)) = (rank(a), rank(b));
+            a_below.cmp(&b_below).then(a_distance.total_cmp(&b_distance)).then(a.water.cmp(&b.water))
+        })
     }
 }
 

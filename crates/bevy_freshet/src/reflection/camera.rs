@@ -193,4 +193,3 @@ fn draw(commands: &mut Commands, mirror: &mut Mirror, viewer: &ViewerData, wante
     camera.try_insert(projection);
     viewer.insert_lighting(&mut camera);
 }
-

@@ -48,12 +48,7 @@ impl ClearSky {
     ///
     /// # Errors
     /// Turbidity or albedo out of the model's range.
-    pub fn new(
-        elevation: f32,
-        azimuth: f32,
-        turbidity: f32,
-        ground_albedo: Vec3,
-    ) -> Result<Self, Error> {
+    pub fn new(elevation: f32, azimuth: f32, turbidity: f32, ground_albedo: Vec3) -> Result<Self, Error> {
         let sun_direction = sun::direction(elevation, azimuth);
         let mut sky = Self {
             sun_direction,
@@ -66,9 +61,7 @@ impl ClearSky {
             dusk_scale: 0.0,
             aureole: Vec3::ZERO,
         };
-        sky.aureole = sky.sun_illuminance
-            * sun::haze_depth(elevation, turbidity).min(Vec3::ONE)
-            * COARSE_HAZE;
+        sky.aureole = sky.sun_illuminance * sun::haze_depth(elevation, turbidity).min(Vec3::ONE) * COARSE_HAZE;
         if elevation < 0.0 {
             sky.calibrate_twilight(elevation);
         }
@@ -94,8 +87,7 @@ impl ClearSky {
             return self.above(direction);
         }
         let level = Vec3::new(direction.x, 0.0, direction.z).normalize_or(Vec3::X);
-        self.ground
-            .lerp(self.above(level), ops::exp(direction.y / HAZE_SINE))
+        self.ground.lerp(self.above(level), ops::exp(direction.y / HAZE_SINE))
     }
 
     /// What the model lacks under a sun lower than 14°: the ozone that keeps the zenith blue (Hulburt 1953) and the red
@@ -103,23 +95,16 @@ impl ClearSky {
     fn low_sun_tint(&self, direction: Vec3) -> Vec3 {
         const ZENITH: Vec3 = Vec3::new(0.82, 0.94, 1.30);
         const HORIZON: Vec3 = Vec3::new(1.38, 0.90, 0.68);
-        let low = 1.0
-            - smoothstep(
-                0.0,
-                14.0,
-                ops::asin(self.sun_direction.y.max(0.0)).to_degrees(),
-            );
+        let low = 1.0 - smoothstep(0.0, 14.0, ops::asin(self.sun_direction.y.max(0.0)).to_degrees());
         let facing = 0.5 + 0.5 * direction.dot(self.model.sun);
         let near = ops::exp(-direction.y / 0.25) * (0.25 + 0.75 * facing);
         Vec3::ONE.lerp(ZENITH.lerp(HORIZON, near), low)
     }
 
     fn above(&self, direction: Vec3) -> Vec3 {
-        let mut radiance =
-            self.aureole * sun::henyey_greenstein(0.975, direction.dot(self.sun_direction));
+        let mut radiance = self.aureole * sun::henyey_greenstein(0.975, direction.dot(self.sun_direction));
         if self.day_scale > 0.0 {
-            radiance +=
-                self.model.radiance(direction) * self.day_scale * self.low_sun_tint(direction);
+            radiance += self.model.radiance(direction) * self.day_scale * self.low_sun_tint(direction);
         }
         if self.dusk_scale > 0.0 {
             radiance += self.dusk.radiance(direction) * self.dusk_scale;
@@ -163,12 +148,7 @@ struct HosekWilkie {
 impl HosekWilkie {
     fn new(elevation: f32, azimuth: f32, turbidity: f32, albedo: Vec3) -> Result<Self, Error> {
         let elevation = elevation.max(0.0);
-        let (p, mean) = SkyState::new(&SkyParams {
-            elevation,
-            turbidity,
-            albedo: albedo.to_array(),
-        })?
-        .raw();
+        let (p, mean) = SkyState::new(&SkyParams { elevation, turbidity, albedo: albedo.to_array() })?.raw();
         Ok(Self {
             sun: sun::direction(elevation, azimuth),
             p: std::array::from_fn(|i| Vec3::new(p[i], p[9 + i], p[18 + i])),
@@ -186,10 +166,7 @@ impl HosekWilkie {
         let base = 1.0 + p[8] * p[8] - 2.0 * cos_gamma * p[8];
         let mie = (1.0 + cos_gamma * cos_gamma) / (base * base.map(ops::sqrt));
         let gradient = 1.0 + p[0] * exp(p[1] / (cos_theta + 0.01));
-        let glow = p[2]
-            + p[3] * exp(p[4] * ops::acos(cos_gamma))
-            + p[5] * cos_gamma * cos_gamma
-            + p[6] * mie;
+        let glow = p[2] + p[3] * exp(p[4] * ops::acos(cos_gamma)) + p[5] * cos_gamma * cos_gamma + p[6] * mie;
         (self.mean * gradient * (glow + p[7] * ops::sqrt(cos_theta))).max(Vec3::ZERO)
     }
 }
@@ -205,10 +182,7 @@ struct Dusk {
 
 impl Dusk {
     fn new(elevation: f32, azimuth: f32) -> Self {
-        Self {
-            towards: sun::direction(0.0, azimuth),
-            depth: (-elevation.to_degrees()).max(0.0),
-        }
+        Self { towards: sun::direction(0.0, azimuth), depth: (-elevation.to_degrees()).max(0.0) }
     }
 
     /// Blue dome, twilight arch over the sun, and opposite it the Belt of Venus above the rising shadow of the Earth.
@@ -227,13 +201,10 @@ impl Dusk {
         let violet = Vec3::new(0.30, 0.21, 0.36) * (height(20.0) * facing * facing);
         let offset = (altitude - 5.0 - 1.6 * self.depth) / 5.0;
         let pink = 1.0 - smoothstep(4.0, 8.0, self.depth);
-        let belt =
-            Vec3::new(0.34, 0.17, 0.20) * (ops::exp(-offset * offset) * (1.0 - facing) * pink);
-        let shadow =
-            1.0 - 0.35 * (1.0 - facing) * (1.0 - smoothstep(0.0, 4.0 + 1.6 * self.depth, altitude));
+        let belt = Vec3::new(0.34, 0.17, 0.20) * (ops::exp(-offset * offset) * (1.0 - facing) * pink);
+        let shadow = 1.0 - 0.35 * (1.0 - facing) * (1.0 - smoothstep(0.0, 4.0 + 1.6 * self.depth, altitude));
         let moonless = Vec3::new(0.40, 0.52, 0.95) * (1.0 + 0.5 * height(20.0));
-        (dome * shadow + belt + (0.6 * ember + 0.5 * gold + 0.4 * violet) * arch)
-            .lerp(moonless, night)
+        (dome * shadow + belt + (0.6 * ember + 0.5 * gold + 0.4 * violet) * arch).lerp(moonless, night)
     }
 }
 
@@ -262,21 +233,11 @@ mod tests {
         use hw_skymodel::rgb::Channel;
         let (elevation, azimuth) = (0.4, 2.0);
         let model = HosekWilkie::new(elevation, azimuth, 3.0, ALBEDO).unwrap();
-        let reference = SkyState::new(&SkyParams {
-            elevation,
-            turbidity: 3.0,
-            albedo: ALBEDO.to_array(),
-        })
-        .unwrap();
-        for direction in [
-            Vec3::new(0.2, 0.9, 0.3),
-            Vec3::new(-0.7, 0.1, 0.7),
-            Vec3::new(0.5, 0.5, 0.6),
-        ] {
+        let reference = SkyState::new(&SkyParams { elevation, turbidity: 3.0, albedo: ALBEDO.to_array() }).unwrap();
+        for direction in [Vec3::new(0.2, 0.9, 0.3), Vec3::new(-0.7, 0.1, 0.7), Vec3::new(0.5, 0.5, 0.6)] {
             let d = direction.normalize();
             let (theta, gamma) = (d.y.acos(), d.dot(model.sun).acos());
-            let expected =
-                [Channel::R, Channel::G, Channel::B].map(|c| reference.radiance(theta, gamma, c));
+            let expected = [Channel::R, Channel::G, Channel::B].map(|c| reference.radiance(theta, gamma, c));
             assert!(model.radiance(d).distance(Vec3::from_array(expected)) < 1e-3);
         }
     }
@@ -293,9 +254,7 @@ mod tests {
 
     #[test]
     fn sun_and_sky_light_the_ground_as_measured() {
-        for degrees in [
-            -17.0, -10.0, -4.0, -1.0, 1.0, 3.0, 6.0, 10.0, 20.0, 45.0, 80.0,
-        ] {
+        for degrees in [-17.0, -10.0, -4.0, -1.0, 1.0, 3.0, 6.0, 10.0, 20.0, 45.0, 80.0] {
             let expected = sun::ground_illuminance(f32::to_radians(degrees));
             let ratio = ground_illuminance(&sky(degrees)) / expected;
             assert!((0.7..1.45).contains(&ratio), "{degrees}°: {ratio}");
@@ -317,20 +276,10 @@ mod tests {
     fn radiance_is_finite_and_not_negative_everywhere() {
         for degrees in [-90.0, -18.0, -5.0, -0.1, 0.0, 0.1, 45.0, 90.0] {
             for turbidity in [1.0, 10.0] {
-                let sky =
-                    ClearSky::new(f32::to_radians(degrees), 3.0, turbidity, Vec3::ONE).unwrap();
-                for direction in [
-                    Vec3::Y,
-                    Vec3::NEG_Y,
-                    Vec3::X,
-                    sky.sun_direction,
-                    -sky.sun_direction,
-                ] {
+                let sky = ClearSky::new(f32::to_radians(degrees), 3.0, turbidity, Vec3::ONE).unwrap();
+                for direction in [Vec3::Y, Vec3::NEG_Y, Vec3::X, sky.sun_direction, -sky.sun_direction] {
                     let l = sky.radiance(direction);
-                    assert!(
-                        l.is_finite() && l.min_element() >= 0.0,
-                        "{degrees}° {direction}: {l}"
-                    );
+                    assert!(l.is_finite() && l.min_element() >= 0.0, "{degrees}° {direction}: {l}");
                 }
             }
         }

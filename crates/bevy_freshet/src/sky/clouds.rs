@@ -101,11 +101,7 @@ impl Clouds {
         let haze = 1.0 - smoothstep(0.6 * FARTHEST, FARTHEST, enter);
         CloudTexel {
             opacity: opacity * haze,
-            distance: if opacity > 0.0 {
-                distance / opacity
-            } else {
-                0.0
-            },
+            distance: if opacity > 0.0 { distance / opacity } else { 0.0 },
             veil: self.veil(direction),
         }
     }
@@ -117,14 +113,9 @@ impl Clouds {
         if above <= 0.0 || above >= height {
             return 0.0;
         }
-        let dome =
-            ((height - above) / (0.1 + 0.45 * height)).min(1.0) * smoothstep(0.0, 0.12, above);
+        let dome = ((height - above) / (0.1 + 0.45 * height)).min(1.0) * smoothstep(0.0, 0.12, above);
         let sharp = 1.0 - smoothstep(0.03, 0.15, blur);
-        let eaten = if sharp > 0.0 {
-            0.8 * sharp * self.billows.sample(point.to_array())
-        } else {
-            0.0
-        };
+        let eaten = if sharp > 0.0 { 0.8 * sharp * self.billows.sample(point.to_array()) } else { 0.0 };
         ((dome - eaten) / (1.0 - eaten)).max(0.0)
     }
 
@@ -151,16 +142,8 @@ impl Clouds {
         let wind = Vec2::new(0.82, 0.57);
         let (along, across) = (at.dot(wind), at.perp_dot(wind));
         let bend = fbm(&self.cirrus, Vec2::new(along, across) / 30.0, 2);
-        let field = fbm(
-            &self.cirrus,
-            Vec2::new(along / 26.0, across / 13.0) + 7.3,
-            3,
-        );
-        let fibres = fbm(
-            &self.cirrus,
-            Vec2::new(along / 16.0 + bend, across / 2.6 + 2.5 * bend),
-            5,
-        );
+        let field = fbm(&self.cirrus, Vec2::new(along / 26.0, across / 13.0) + 7.3, 3);
+        let fibres = fbm(&self.cirrus, Vec2::new(along / 16.0 + bend, across / 2.6 + 2.5 * bend), 5);
         let amount = smoothstep(-0.15, 0.6, field + 0.9 * self.cover - 0.35);
         0.55 * haze * amount * smoothstep(-0.35, 0.7, fibres)
     }
@@ -177,9 +160,7 @@ impl Clouds {
             * ops::exp(-depth)
             * texel.opacity;
         let high = ((point.y - BASE) / 0.8).clamp(0.0, 1.0);
-        light.sun * (many + once)
-            + light.sky * 0.6.lerp(1.0, high)
-            + light.ground * 0.6.lerp(0.1, high)
+        light.sun * (many + once) + light.sky * 0.6.lerp(1.0, high) + light.ground * 0.6.lerp(0.1, high)
     }
 
     /// Radiance of cirrus, in cd/m² per channel, as if it were opaque: thin, so it scatters once and mostly forward.
@@ -207,10 +188,7 @@ fn cumulus_heights(seed: u32, cover: f32) -> Grid<2> {
     let noise = Perlin::new(seed);
     let mut grid = Grid::<2>::from_fn(1024, 0.06, |[x, z]| {
         let p = Vec2::new(x, z);
-        let warp = Vec2::new(
-            fbm(&noise, p / 2.3 + 31.7, 2),
-            fbm(&noise, p / 2.3 - 12.1, 2),
-        );
+        let warp = Vec2::new(fbm(&noise, p / 2.3 + 31.7, 2), fbm(&noise, p / 2.3 - 12.1, 2));
         let places = fbm(&noise, p / 2.6 + 0.35 * warp, 3) + 0.5 * fbm(&noise, p / 13.0 + 5.5, 2);
         places + 0.42 * (0.5 - billow(&noise, p / 1.1 + 0.5 * warp, 4))
     });
@@ -273,24 +251,16 @@ impl<const D: usize> Grid<D> {
     fn from_fn(size: usize, spacing: f32, value: impl Fn([f32; D]) -> f32 + Sync) -> Self {
         let mut values = vec![0.0; size.pow(D as u32)];
         let chunk = values.len() / 64;
-        values.par_chunk_map_mut(
-            ComputeTaskPool::get_or_init(TaskPool::new),
-            chunk,
-            |i, part| {
-                for (offset, out) in part.iter_mut().enumerate() {
-                    let index = i * chunk + offset;
-                    *out = value(std::array::from_fn(|axis| {
-                        let cell = index / size.pow(axis as u32) % size;
-                        (cell as f32 - 0.5 * (size - 1) as f32) * spacing
-                    }));
-                }
-            },
-        );
-        Self {
-            size,
-            spacing,
-            values,
-        }
+        values.par_chunk_map_mut(ComputeTaskPool::get_or_init(TaskPool::new), chunk, |i, part| {
+            for (offset, out) in part.iter_mut().enumerate() {
+                let index = i * chunk + offset;
+                *out = value(std::array::from_fn(|axis| {
+                    let cell = index / size.pow(axis as u32) % size;
+                    (cell as f32 - 0.5 * (size - 1) as f32) * spacing
+                }));
+            }
+        });
+        Self { size, spacing, values }
     }
 
     /// Linear interpolation at a point, coordinates in the unit of `spacing`.
@@ -330,8 +300,7 @@ mod tests {
     fn cover_is_the_share_of_the_plane_under_cloud() {
         for cover in [0.0, 0.25, 0.6, 1.0] {
             let heights = cumulus_heights(3, cover).values;
-            let covered =
-                heights.iter().filter(|h| **h > 0.0).count() as f32 / heights.len() as f32;
+            let covered = heights.iter().filter(|h| **h > 0.0).count() as f32 / heights.len() as f32;
             assert!((covered - cover).abs() < 0.01, "{cover}: {covered}");
         }
     }
@@ -339,16 +308,12 @@ mod tests {
     #[test]
     fn no_cover_is_a_clear_sky() {
         let clouds = Clouds::new(1, 0.0);
-        assert_eq!(
-            clouds.trace(Vec3::new(0.1, 0.9, 0.2).normalize(), 0.01),
-            CloudTexel::default()
-        );
+        assert_eq!(clouds.trace(Vec3::new(0.1, 0.9, 0.2).normalize(), 0.01), CloudTexel::default());
     }
 
     #[test]
     fn the_same_seed_gives_the_same_clouds() {
-        let at =
-            |seed: u32| Clouds::new(seed, 0.5).trace(Vec3::new(0.3, 0.4, -0.5).normalize(), 0.01);
+        let at = |seed: u32| Clouds::new(seed, 0.5).trace(Vec3::new(0.3, 0.4, -0.5).normalize(), 0.01);
         assert_eq!(at(5), at(5));
     }
 

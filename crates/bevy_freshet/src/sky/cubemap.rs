@@ -20,10 +20,7 @@ pub(super) struct Cubemap {
 impl Cubemap {
     /// Evaluates `radiance(texel index, world direction)` at the centre of every texel, on all cores.
     pub fn from_fn(size: usize, radiance: impl Fn(usize, Vec3) -> Vec3 + Sync) -> Self {
-        Self {
-            size,
-            texels: texels_from_fn(size, radiance),
-        }
+        Self { size, texels: texels_from_fn(size, radiance) }
     }
 
     /// The unit world direction through the centre of a texel.
@@ -38,15 +35,11 @@ impl Cubemap {
     /// Integral of 1 / (1 + u² + v²)^(3/2) over the texel, from the antiderivative atan(u v / √(1 + u² + v²)).
     pub fn solid_angle(size: usize, index: usize) -> f32 {
         let corner = |column: usize, row: usize| {
-            let (u, v) = (
-                2.0 * column as f32 / size as f32 - 1.0,
-                2.0 * row as f32 / size as f32 - 1.0,
-            );
+            let (u, v) = (2.0 * column as f32 / size as f32 - 1.0, 2.0 * row as f32 / size as f32 - 1.0);
             ops::atan2(u * v, ops::sqrt(1.0 + u * u + v * v))
         };
         let (row, column) = (index / size % size, index % size);
-        corner(column + 1, row + 1) - corner(column, row + 1) - corner(column + 1, row)
-            + corner(column, row)
+        corner(column + 1, row + 1) - corner(column, row + 1) - corner(column + 1, row) + corner(column, row)
     }
 
     /// Bilinear sample in a world direction of any length, blended across the edges of the faces as a GPU does.
@@ -56,12 +49,8 @@ impl Cubemap {
         let low = at.floor();
         let weight = at - low;
         let (x, y) = (low.x as i32, low.y as i32);
-        let top = self
-            .texel(face, x, y)
-            .lerp(self.texel(face, x + 1, y), weight.x);
-        let bottom = self
-            .texel(face, x, y + 1)
-            .lerp(self.texel(face, x + 1, y + 1), weight.x);
+        let top = self.texel(face, x, y).lerp(self.texel(face, x + 1, y), weight.x);
+        let bottom = self.texel(face, x, y + 1).lerp(self.texel(face, x + 1, y + 1), weight.x);
         top.lerp(bottom, weight.y)
     }
 
@@ -73,9 +62,7 @@ impl Cubemap {
         }
         let uv = (Vec2::new(x as f32, y as f32) + 0.5) * 2.0 / size as f32 - 1.0;
         let (face, uv) = face_from_direction(face_direction(face, uv));
-        let cell = ((uv + 1.0) * 0.5 * size as f32)
-            .as_ivec2()
-            .clamp(IVec2::ZERO, IVec2::splat(size - 1));
+        let cell = ((uv + 1.0) * 0.5 * size as f32).as_ivec2().clamp(IVec2::ZERO, IVec2::splat(size - 1));
         self.texels[(face * self.size + cell.y as usize) * self.size + cell.x as usize]
     }
 
@@ -93,30 +80,22 @@ impl Cubemap {
     /// Weighted sum over the sphere: ∫ L(ω) weight(ω) dω.
     pub fn integrate(&self, weight: impl Fn(Vec3) -> f32) -> Vec3 {
         let texel = |(index, radiance): (usize, &Vec3)| {
-            *radiance
-                * (weight(Self::direction(self.size, index)) * Self::solid_angle(self.size, index))
+            *radiance * (weight(Self::direction(self.size, index)) * Self::solid_angle(self.size, index))
         };
         self.texels.iter().enumerate().map(texel).sum()
     }
 }
 
 /// Evaluates a function of texel index and world direction for all texels of a cube map, on all cores.
-pub(super) fn texels_from_fn<T: Copy + Default + Send>(
-    size: usize,
-    texel: impl Fn(usize, Vec3) -> T + Sync,
-) -> Vec<T> {
+pub(super) fn texels_from_fn<T: Copy + Default + Send>(size: usize, texel: impl Fn(usize, Vec3) -> T + Sync) -> Vec<T> {
     let mut texels = vec![T::default(); 6 * size * size];
     let rows = (16 * size).min(texels.len());
-    texels.par_chunk_map_mut(
-        ComputeTaskPool::get_or_init(TaskPool::new),
-        rows,
-        |chunk, row| {
-            for (column, out) in row.iter_mut().enumerate() {
-                let index = chunk * rows + column;
-                *out = texel(index, Cubemap::direction(size, index));
-            }
-        },
-    );
+    texels.par_chunk_map_mut(ComputeTaskPool::get_or_init(TaskPool::new), rows, |chunk, row| {
+        for (column, out) in row.iter_mut().enumerate() {
+            let index = chunk * rows + column;
+            *out = texel(index, Cubemap::direction(size, index));
+        }
+    });
     texels
 }
 
@@ -139,20 +118,11 @@ fn face_from_direction(direction: Vec3) -> (usize, Vec2) {
     let d = direction * Vec3::new(1.0, 1.0, -1.0);
     let a = d.abs();
     if a.x >= a.y && a.x >= a.z {
-        (
-            usize::from(d.x < 0.0),
-            Vec2::new(-d.z * d.x.signum(), -d.y) / a.x,
-        )
+        (usize::from(d.x < 0.0), Vec2::new(-d.z * d.x.signum(), -d.y) / a.x)
     } else if a.y >= a.z {
-        (
-            2 + usize::from(d.y < 0.0),
-            Vec2::new(d.x, d.z * d.y.signum()) / a.y,
-        )
+        (2 + usize::from(d.y < 0.0), Vec2::new(d.x, d.z * d.y.signum()) / a.y)
     } else {
-        (
-            4 + usize::from(d.z < 0.0),
-            Vec2::new(d.x * d.z.signum(), -d.y) / a.z,
-        )
+        (4 + usize::from(d.z < 0.0), Vec2::new(d.x * d.z.signum(), -d.y) / a.z)
     }
 }
 
@@ -167,10 +137,7 @@ mod tests {
         for index in 0..6 * size * size {
             let (face, uv) = face_from_direction(Cubemap::direction(size, index));
             let cell = ((uv + 1.0) * 0.5 * size as f32).as_uvec2();
-            assert_eq!(
-                (face * size + cell.y as usize) * size + cell.x as usize,
-                index
-            );
+            assert_eq!((face * size + cell.y as usize) * size + cell.x as usize, index);
         }
     }
 
@@ -188,9 +155,7 @@ mod tests {
     #[test]
     fn texels_cover_the_sphere() {
         for size in [1, 2, 16] {
-            let total: f32 = (0..6 * size * size)
-                .map(|i| Cubemap::solid_angle(size, i))
-                .sum();
+            let total: f32 = (0..6 * size * size).map(|i| Cubemap::solid_angle(size, i)).sum();
             assert!((total - 4.0 * PI).abs() < 1e-4, "{total}");
         }
         let up = Cubemap::from_fn(32, |_, _| Vec3::ONE).integrate(|d| d.y.max(0.0));
@@ -201,15 +166,8 @@ mod tests {
     fn samples_reproduce_a_smooth_field() {
         let map = Cubemap::from_fn(64, |_, d| d);
         // The last lies on the edge of two faces.
-        for direction in [
-            Vec3::new(0.3, 0.5, -0.8),
-            Vec3::new(-0.9, -0.2, 0.1),
-            Vec3::new(0.7, 0.7, 0.4),
-        ] {
-            assert!(
-                map.sample(direction).distance(direction.normalize()) < 5e-3,
-                "{direction}"
-            );
+        for direction in [Vec3::new(0.3, 0.5, -0.8), Vec3::new(-0.9, -0.2, 0.1), Vec3::new(0.7, 0.7, 0.4)] {
+            assert!(map.sample(direction).distance(direction.normalize()) < 5e-3, "{direction}");
         }
     }
 }

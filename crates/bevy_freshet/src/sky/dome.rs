@@ -30,11 +30,7 @@ impl CloudMap {
         let clouds = Clouds::new(sky.seed, sky.cloud_cover);
         let width = FRAC_PI_2 / size as f32;
         let texels = texels_from_fn(size, |_, direction| clouds.trace(direction, width));
-        Self {
-            size,
-            clouds,
-            texels,
-        }
+        Self { size, clouds, texels }
     }
 }
 
@@ -68,20 +64,14 @@ impl Dome {
             sun::beam(elevation, 1.0 + haze * (sky.turbidity - 1.0)) * sun::visible_share(elevation)
         };
         let light = CloudLight {
-            sun_direction: clear
-                .sun_direction
-                .with_y(clear.sun_direction.y.max(0.0) + CUMULUS_DIP)
-                .normalize(),
+            sun_direction: clear.sun_direction.with_y(clear.sun_direction.y.max(0.0) + CUMULUS_DIP).normalize(),
             sun: beam(CUMULUS_DIP, 0.5),
             high_sun: beam(CIRRUS_DIP, 0.1),
             sky: clear.sky_illuminance / PI,
             ground: clear.ground,
         };
         let mut dome = Self {
-            radiance: Cubemap {
-                size: map.size,
-                texels: Vec::new(),
-            },
+            radiance: Cubemap { size: map.size, texels: Vec::new() },
             sun_illuminance: clear.sun_illuminance * direct_share(sky.cloud_cover),
             clear,
             overcast: overcast(sky.cloud_cover),
@@ -138,9 +128,6 @@ fn disc_share(sun: Vec3, direction: Vec3, size: usize) -> f32 {
         let d = (direction + right * offset(i) + up * offset(j)).normalize();
         d.dot(sun) > ops::cos(SOLAR_RADIUS)
     };
-    let hits = (0..SAMPLES)
-        .flat_map(|i| (0..SAMPLES).map(move |j| (i, j)))
-        .filter(|(i, j)| inside(*i, *j))
-        .count();
+    let hits = (0..SAMPLES).flat_map(|i| (0..SAMPLES).map(move |j| (i, j))).filter(|(i, j)| inside(*i, *j)).count();
     hits as f32 / (SAMPLES * SAMPLES) as f32
 }

@@ -39,17 +39,11 @@ pub(super) fn diffuse(pyramid: &[Cubemap]) -> Cubemap {
     let source = pyramid.iter().find(small).unwrap_or(&pyramid[0]);
     let light = |(index, radiance): (usize, &Vec3)| {
         let solid_angle = Cubemap::solid_angle(source.size, index);
-        (
-            Cubemap::direction(source.size, index),
-            *radiance * solid_angle,
-        )
+        (Cubemap::direction(source.size, index), *radiance * solid_angle)
     };
     let lights: Vec<(Vec3, Vec3)> = source.texels.iter().enumerate().map(light).collect();
     Cubemap::from_fn(DIFFUSE_SIZE, |_, normal| {
-        let sum: Vec3 = lights
-            .iter()
-            .map(|(direction, power)| *power * direction.dot(normal).max(0.0))
-            .sum();
+        let sum: Vec3 = lights.iter().map(|(direction, power)| *power * direction.dot(normal).max(0.0)).sum();
         sum / PI
     })
 }
@@ -82,26 +76,17 @@ fn lobe(pyramid: &[Cubemap], level: usize, roughness: f32) -> Vec<Sample> {
     let texel = 4.0 * PI / (6 * pyramid[0].size * pyramid[0].size) as f32;
     let sample = |i: u32| {
         // Hammersley points: an even step and the bits of the index mirrored.
-        let (u, v) = (
-            (i as f32 + 0.5) / count as f32,
-            i.reverse_bits() as f32 / u32::MAX as f32,
-        );
+        let (u, v) = ((i as f32 + 0.5) / count as f32, i.reverse_bits() as f32 / u32::MAX as f32);
         let cos2 = (1.0 - u) / (1.0 + (alpha2 - 1.0) * u);
-        let half = Vec3::new(ops::cos(TAU * v), ops::sin(TAU * v), 0.0) * ops::sqrt(1.0 - cos2)
-            + Vec3::Z * ops::sqrt(cos2);
+        let half =
+            Vec3::new(ops::cos(TAU * v), ops::sin(TAU * v), 0.0) * ops::sqrt(1.0 - cos2) + Vec3::Z * ops::sqrt(cos2);
         let direction = 2.0 * half.z * half - Vec3::Z;
         let spread = 1.0 + (alpha2 - 1.0) * cos2;
         let density = alpha2 / (PI * spread * spread) / 4.0;
         let share = 1.0 / (count as f32 * density.max(1e-6));
         // One level more than the share asks for hides the single samples of a bright spot (same source).
-        let wanted = (0.5 * ops::log2(share / texel) + 1.0)
-            .max(level as f32 - 1.0)
-            .round() as usize;
-        Sample {
-            direction,
-            weight: direction.z,
-            level: wanted.min(pyramid.len() - 1),
-        }
+        let wanted = (0.5 * ops::log2(share / texel) + 1.0).max(level as f32 - 1.0).round() as usize;
+        Sample { direction, weight: direction.z, level: wanted.min(pyramid.len() - 1) }
     };
     (0..count).map(sample).filter(|s| s.weight > 0.0).collect()
 }
@@ -111,20 +96,14 @@ mod tests {
     use super::*;
 
     fn bright_half() -> Vec<Cubemap> {
-        pyramid(Cubemap::from_fn(64, |_, d| {
-            Vec3::new(d.y.max(0.0), 1.0, f32::from(d.x > 0.0))
-        }))
+        pyramid(Cubemap::from_fn(64, |_, d| Vec3::new(d.y.max(0.0), 1.0, f32::from(d.x > 0.0))))
     }
 
     #[test]
     fn an_even_sky_stays_as_it_is() {
         let pyramid = pyramid(Cubemap::from_fn(32, |_, _| Vec3::splat(3.0)));
         for map in specular(&pyramid).iter().chain([&diffuse(&pyramid)]) {
-            assert!(
-                map.texels
-                    .iter()
-                    .all(|t| t.distance(Vec3::splat(3.0)) < 0.02)
-            );
+            assert!(map.texels.iter().all(|t| t.distance(Vec3::splat(3.0)) < 0.02));
         }
     }
 
@@ -132,18 +111,10 @@ mod tests {
     fn diffuse_is_irradiance_over_pi() {
         let pyramid = bright_half();
         let diffuse = diffuse(&pyramid);
-        for normal in [
-            Vec3::Y,
-            Vec3::NEG_Y,
-            Vec3::X,
-            Vec3::new(0.6, 0.5, -0.6).normalize(),
-        ] {
+        for normal in [Vec3::Y, Vec3::NEG_Y, Vec3::X, Vec3::new(0.6, 0.5, -0.6).normalize()] {
             let expected = pyramid[0].integrate(|d| d.dot(normal).max(0.0)) / PI;
             let found = diffuse.sample(normal);
-            assert!(
-                found.distance(expected) < 0.015 * expected.length(),
-                "{normal}: {found} for {expected}"
-            );
+            assert!(found.distance(expected) < 0.015 * expected.length(), "{normal}: {found} for {expected}");
         }
         // Analytic: a sky of radiance cos θ lights level ground with 2π/3.
         assert!((diffuse.sample(Vec3::Y).x - 2.0 / 3.0).abs() < 0.01);
@@ -152,9 +123,7 @@ mod tests {
     #[test]
     fn rougher_levels_are_softer_and_lose_no_light() {
         let levels = specular(&bright_half());
-        let contrast = |map: &Cubemap| {
-            map.sample(Vec3::new(1.0, 0.0, 0.2)).z - map.sample(Vec3::new(-1.0, 0.0, 0.2)).z
-        };
+        let contrast = |map: &Cubemap| map.sample(Vec3::new(1.0, 0.0, 0.2)).z - map.sample(Vec3::new(-1.0, 0.0, 0.2)).z;
         for pair in levels.windows(2).take(5) {
             assert!(contrast(&pair[1]) <= contrast(&pair[0]) + 0.02);
             let mean = |map: &Cubemap| map.integrate(|_| 1.0).z / (4.0 * PI);

@@ -6,8 +6,8 @@ use bevy::{
     image::{Image, ImageSampler, ImageSamplerDescriptor},
     math::Vec3,
     render::render_resource::{
-        Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
-        TextureViewDescriptor, TextureViewDimension,
+        Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureViewDescriptor,
+        TextureViewDimension,
     },
 };
 use half::f16;
@@ -28,11 +28,7 @@ pub(super) fn cube_image(label: &'static str, levels: &[Cubemap], scale: f32) ->
         data: Some(data),
         texture_descriptor: TextureDescriptor {
             label: Some(label),
-            size: Extent3d {
-                width: size,
-                height: size,
-                depth_or_array_layers: 6,
-            },
+            size: Extent3d { width: size, height: size, depth_or_array_layers: 6 },
             mip_level_count: levels.len() as u32,
             sample_count: 1,
             dimension: TextureDimension::D2,

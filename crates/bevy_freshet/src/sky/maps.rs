@@ -70,13 +70,7 @@ fn bearing_angle(bearing: usize) -> f32 {
 
 /// Turns and colours every sun, and repaints the first sky when it has changed enough to be seen.
 pub(super) fn update_skies(
-    mut skies: Query<(
-        Entity,
-        Ref<Sky>,
-        &mut SkyMaps,
-        &mut DirectionalLight,
-        &mut Transform,
-    )>,
+    mut skies: Query<(Entity, Ref<Sky>, &mut SkyMaps, &mut DirectionalLight, &mut Transform)>,
     mut images: ResMut<Assets<Image>>,
     mut painter: Local<Painter>,
     mut reported: ResMut<Reported>,
@@ -89,11 +83,7 @@ pub(super) fn update_skies(
         let sky = &sky.usable(entity, &mut reported);
         shine(sky, &mut light, &mut transform);
         if Some(entity) != drawn {
-            reported.warn(
-                entity,
-                "Sky",
-                "is not the only one: it shines but another one is drawn",
-            );
+            reported.warn(entity, "Sky", "is not the only one: it shines but another one is drawn");
         } else if painter.is_due(entity, sky) {
             painter.paint(entity, sky, &mut maps, &mut images);
         }
@@ -105,22 +95,15 @@ fn shine(sky: &Sky, light: &mut DirectionalLight, transform: &mut Transform) {
     let color = sun_illuminance(sky);
     light.illuminance = luminance(color);
     // The light's colour times its illuminance must be `color`.
-    let unit = if light.illuminance > 0.0 {
-        color / light.illuminance
-    } else {
-        Vec3::ONE
-    };
+    let unit = if light.illuminance > 0.0 { color / light.illuminance } else { Vec3::ONE };
     light.color = Color::LinearRgba(LinearRgba::rgb(unit.x, unit.y, unit.z));
-    transform.rotation = Transform::default()
-        .looking_to(-sky.direction_to_sun(), Vec3::Z)
-        .rotation;
+    transform.rotation = Transform::default().looking_to(-sky.direction_to_sun(), Vec3::Z).rotation;
 }
 
 /// Illuminance of a surface that faces the sun, in lux per channel, averaged over what the clouds let through.
 fn sun_illuminance(sky: &Sky) -> Vec3 {
     let (elevation, cover) = (sky.sun_elevation, sky.cloud_cover);
-    sun::beam(elevation, sky.turbidity)
-        * (sun::visible_share(elevation) * dome::direct_share(cover))
+    sun::beam(elevation, sky.turbidity) * (sun::visible_share(elevation) * dome::direct_share(cover))
 }
 
 /// What was painted last, and the parts that serve again.
@@ -135,25 +118,13 @@ impl Painter {
         let Some((painted, last)) = self.last else {
             return true;
         };
-        let moved = last
-            .direction_to_sun()
-            .angle_between(sky.direction_to_sun())
-            > REPAINT_ANGLE;
-        let with_same_sun = Sky {
-            sun_elevation: sky.sun_elevation,
-            sun_azimuth: sky.sun_azimuth,
-            ..last
-        };
+        let moved = last.direction_to_sun().angle_between(sky.direction_to_sun()) > REPAINT_ANGLE;
+        let with_same_sun = Sky { sun_elevation: sky.sun_elevation, sun_azimuth: sky.sun_azimuth, ..last };
         moved || painted != entity || with_same_sun != *sky
     }
 
     fn paint(&mut self, entity: Entity, sky: &Sky, maps: &mut SkyMaps, images: &mut Assets<Image>) {
-        let clear = match ClearSky::new(
-            sky.sun_elevation,
-            sky.sun_azimuth,
-            sky.turbidity,
-            sky.ground_albedo,
-        ) {
+        let clear = match ClearSky::new(sky.sun_elevation, sky.sun_azimuth, sky.turbidity, sky.ground_albedo) {
             Ok(clear) => clear,
             Err(reason) => return error!("the sky of entity {entity} cannot be painted: {reason}"),
         };
@@ -167,11 +138,7 @@ impl Painter {
         let brightness = (luminance(sky_illuminance) / PI).max(1e-6);
         let scale = 1.0 / brightness;
         *maps = SkyMaps {
-            visible: replaced(
-                images,
-                &maps.visible,
-                image::cube_image("sky_visible", &[visible], scale),
-            ),
+            visible: replaced(images, &maps.visible, image::cube_image("sky_visible", &[visible], scale)),
             specular: replaced(
                 images,
                 &maps.specular,
@@ -189,22 +156,15 @@ impl Painter {
                 luminance(sky_illuminance),
                 luminance(dome.sun_illuminance) * sky.sun_elevation.sin().max(0.0),
             ),
-            horizon: (0..BEARINGS)
-                .map(|b| dome.air(sun::direction(0.005, bearing_angle(b))))
-                .collect(),
+            horizon: (0..BEARINGS).map(|b| dome.air(sun::direction(0.005, bearing_angle(b)))).collect(),
         };
     }
 
     /// The clouds of this seed, cover and resolution; traced only when one of the three is new.
     fn clouds(&mut self, sky: &Sky) -> &CloudMap {
-        let same = |a: &Sky| {
-            (a.seed, a.cloud_cover, a.resolution) == (sky.seed, sky.cloud_cover, sky.resolution)
-        };
+        let same = |a: &Sky| (a.seed, a.cloud_cover, a.resolution) == (sky.seed, sky.cloud_cover, sky.resolution);
         let kept = self.clouds.take().filter(|(of, _)| same(of));
-        &self
-            .clouds
-            .insert(kept.unwrap_or_else(|| (*sky, CloudMap::new(sky))))
-            .1
+        &self.clouds.insert(kept.unwrap_or_else(|| (*sky, CloudMap::new(sky)))).1
     }
 }
 
@@ -243,22 +203,12 @@ mod tests {
     };
     use half::f16;
 
-    const PLAIN: fn(f32) -> Sky = |degrees| Sky {
-        cloud_cover: 0.0,
-        resolution: 64,
-        ..Sky::with_sun(degrees, 70.0)
-    };
+    const PLAIN: fn(f32) -> Sky = |degrees| Sky { cloud_cover: 0.0, resolution: 64, ..Sky::with_sun(degrees, 70.0) };
 
     /// An app without a renderer, its sky and a camera-like entity that sees it.
     fn app(sky: Sky) -> (App, Entity, Entity) {
         let mut app = App::new();
-        app.add_plugins((
-            MinimalPlugins,
-            AssetPlugin::default(),
-            TransformPlugin,
-            SkyPlugin,
-        ))
-        .init_asset::<Image>();
+        app.add_plugins((MinimalPlugins, AssetPlugin::default(), TransformPlugin, SkyPlugin)).init_asset::<Image>();
         let sky = app.world_mut().spawn(sky).id();
         let view = app.world_mut().spawn(SkyView::default()).id();
         app.update();
@@ -275,10 +225,7 @@ mod tests {
         let images = app.world().resource::<Assets<Image>>();
         let (size, levels) = {
             let image = images.get(handle).unwrap();
-            (
-                image.width() as usize,
-                image.texture_descriptor.mip_level_count,
-            )
+            (image.width() as usize, image.texture_descriptor.mip_level_count)
         };
         let bytes = texels(app, handle);
         let face_bytes = bytes.len() / 6;
@@ -288,9 +235,7 @@ mod tests {
             f16::from_le_bytes([bytes[at + 2], bytes[at + 3]]).to_f32()
         };
         assert!(levels >= 1);
-        let best = (0..6 * size * size)
-            .max_by(|a, b| value(*a).total_cmp(&value(*b)))
-            .unwrap();
+        let best = (0..6 * size * size).max_by(|a, b| value(*a).total_cmp(&value(*b))).unwrap();
         Cubemap::direction(size, best)
     }
 
@@ -298,10 +243,7 @@ mod tests {
     fn moving_the_sun_moves_light_sky_and_mirrors() {
         let (mut app, sky, view) = app(PLAIN(40.0));
         for (elevation, azimuth) in [(40.0, 70.0), (12.0, 250.0), (65.0, 160.0)] {
-            let moved = Sky {
-                sun_azimuth: f32::to_radians(azimuth),
-                ..PLAIN(elevation)
-            };
+            let moved = Sky { sun_azimuth: f32::to_radians(azimuth), ..PLAIN(elevation) };
             *app.world_mut().get_mut::<Sky>(sky).unwrap() = moved;
             app.update();
             let world = app.world();
@@ -313,15 +255,9 @@ mod tests {
             assert!(brightest(&app, &maps.visible).angle_between(to_sun) < 0.025);
             assert!(brightest(&app, &maps.specular).angle_between(to_sun) < 0.05);
             let seen = world.get::<Skybox>(view).unwrap();
-            assert_eq!(
-                (seen.image.as_ref(), seen.brightness),
-                (Some(&maps.visible), maps.brightness)
-            );
+            assert_eq!((seen.image.as_ref(), seen.brightness), (Some(&maps.visible), maps.brightness));
             let environment = world.get::<EnvironmentMapLight>(view).unwrap();
-            assert_eq!(
-                (&environment.specular_map, environment.intensity),
-                (&maps.specular, maps.brightness)
-            );
+            assert_eq!((&environment.specular_map, environment.intensity), (&maps.specular, maps.brightness));
             assert_eq!(world.get::<Exposure>(view).unwrap().ev100, maps.ev100);
         }
     }
@@ -329,35 +265,21 @@ mod tests {
     #[test]
     fn the_light_keeps_what_the_user_set() {
         let (mut app, _, _) = app(PLAIN(30.0));
-        let own = DirectionalLight {
-            shadow_maps_enabled: false,
-            shadow_depth_bias: 0.7,
-            ..Default::default()
-        };
+        let own = DirectionalLight { shadow_maps_enabled: false, shadow_depth_bias: 0.7, ..Default::default() };
         let sun = app.world_mut().spawn((PLAIN(20.0), own)).id();
         app.update();
         let light = app.world().get::<DirectionalLight>(sun).unwrap();
         assert!(!light.shadow_maps_enabled && light.shadow_depth_bias == 0.7);
-        assert!(
-            (40_000.0..70_000.0).contains(&light.illuminance),
-            "{}",
-            light.illuminance
-        );
+        assert!((40_000.0..70_000.0).contains(&light.illuminance), "{}", light.illuminance);
         let color = light.color.to_linear();
         assert!(color.red > color.green && color.green > color.blue);
     }
 
     #[test]
     fn the_same_sky_has_the_same_bytes() {
-        let sky = Sky {
-            cloud_cover: 0.4,
-            ..PLAIN(25.0)
-        };
+        let sky = Sky { cloud_cover: 0.4, ..PLAIN(25.0) };
         let ((a, sky_a, _), (b, sky_b, _)) = (app(sky), app(sky));
-        let (maps_a, maps_b) = (
-            a.world().get::<SkyMaps>(sky_a).unwrap(),
-            b.world().get::<SkyMaps>(sky_b).unwrap(),
-        );
+        let (maps_a, maps_b) = (a.world().get::<SkyMaps>(sky_a).unwrap(), b.world().get::<SkyMaps>(sky_b).unwrap());
         assert_eq!(texels(&a, &maps_a.visible), texels(&b, &maps_b.visible));
         assert_eq!(texels(&a, &maps_a.specular), texels(&b, &maps_b.specular));
     }
@@ -365,14 +287,7 @@ mod tests {
     #[test]
     fn a_smaller_step_than_one_can_see_is_not_painted() {
         let (mut app, sky, _) = app(PLAIN(30.0));
-        let painted = |app: &App| {
-            app.world()
-                .get_entity(sky)
-                .unwrap()
-                .get_ref::<SkyMaps>()
-                .unwrap()
-                .last_changed()
-        };
+        let painted = |app: &App| app.world().get_entity(sky).unwrap().get_ref::<SkyMaps>().unwrap().last_changed();
         let before = painted(&app);
         app.world_mut().get_mut::<Sky>(sky).unwrap().sun_elevation += 0.5 * REPAINT_ANGLE;
         app.update();
@@ -385,24 +300,10 @@ mod tests {
 
     #[test]
     fn a_senseless_sky_is_painted_all_the_same() {
-        let (app, sky, _) = app(Sky {
-            sun_elevation: f32::NAN,
-            turbidity: -3.0,
-            ..PLAIN(0.0)
-        });
+        let (app, sky, _) = app(Sky { sun_elevation: f32::NAN, turbidity: -3.0, ..PLAIN(0.0) });
         let maps = app.world().get::<SkyMaps>(sky).unwrap();
-        assert!(
-            maps.brightness > 0.0
-                && maps.ev100.is_finite()
-                && maps.horizon_color(Vec3::X).is_finite()
-        );
+        assert!(maps.brightness > 0.0 && maps.ev100.is_finite() && maps.horizon_color(Vec3::X).is_finite());
         let halves = texels(&app, &maps.visible);
-        assert!(
-            halves
-                .as_chunks::<2>()
-                .0
-                .iter()
-                .all(|half| f16::from_le_bytes(*half).is_finite())
-        );
+        assert!(halves.as_chunks::<2>().0.iter().all(|half| f16::from_le_bytes(*half).is_finite()));
     }
 }

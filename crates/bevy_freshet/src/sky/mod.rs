@@ -34,9 +34,7 @@ pub use settings::Sky;
 pub use view::SkyView;
 
 use crate::report::Reported;
-use bevy::{
-    app::prelude::*, asset::Assets, ecs::prelude::*, image::Image, transform::TransformSystems,
-};
+use bevy::{app::prelude::*, asset::Assets, ecs::prelude::*, image::Image, transform::TransformSystems};
 
 /// Draws the [`Sky`] for every camera with a [`SkyView`].
 pub struct SkyPlugin;
@@ -53,9 +51,7 @@ pub enum SkySystems {
 
 impl Plugin for SkyPlugin {
     fn build(&self, app: &mut App) {
-        let paint = (maps::update_skies, view::show_sky)
-            .chain()
-            .in_set(SkySystems::Paint);
+        let paint = (maps::update_skies, view::show_sky).chain().in_set(SkySystems::Paint);
         app.init_resource::<Reported>()
             .configure_sets(
                 PostUpdate,

@@ -79,14 +79,8 @@ impl Sky {
     /// The nearest sky that can be drawn; complains about each field that had to be changed for it.
     pub(super) fn usable(&self, entity: Entity, reported: &mut Reported) -> Self {
         let usual = Self::default();
-        let mut within =
-            |field, value, range, fallback| reported.clamp(entity, field, value, range, fallback);
-        let azimuth = within(
-            "Sky::sun_azimuth",
-            self.sun_azimuth,
-            -1e6..=1e6,
-            usual.sun_azimuth,
-        );
+        let mut within = |field, value, range, fallback| reported.clamp(entity, field, value, range, fallback);
+        let azimuth = within("Sky::sun_azimuth", self.sun_azimuth, -1e6..=1e6, usual.sun_azimuth);
         Self {
             sun_elevation: within(
                 "Sky::sun_elevation",
@@ -95,24 +89,9 @@ impl Sky {
                 usual.sun_elevation,
             ),
             sun_azimuth: ops::rem_euclid(azimuth, TAU),
-            turbidity: within(
-                "Sky::turbidity",
-                self.turbidity,
-                1.0..=10.0,
-                usual.turbidity,
-            ),
-            cloud_cover: within(
-                "Sky::cloud_cover",
-                self.cloud_cover,
-                0.0..=1.0,
-                usual.cloud_cover,
-            ),
-            resolution: within(
-                "Sky::resolution",
-                self.resolution as f32,
-                64.0..=2048.0,
-                512.0,
-            ) as u32,
+            turbidity: within("Sky::turbidity", self.turbidity, 1.0..=10.0, usual.turbidity),
+            cloud_cover: within("Sky::cloud_cover", self.cloud_cover, 0.0..=1.0, usual.cloud_cover),
+            resolution: within("Sky::resolution", self.resolution as f32, 64.0..=2048.0, 512.0) as u32,
             ground_albedo: reported.clamp3(
                 entity,
                 "Sky::ground_albedo",
@@ -127,19 +106,13 @@ impl Sky {
 
     /// Halving the faces down to one texel needs a power of two.
     fn with_whole_faces(self) -> Self {
-        Self {
-            resolution: self.resolution.next_power_of_two(),
-            ..self
-        }
+        Self { resolution: self.resolution.next_power_of_two(), ..self }
     }
 }
 
 /// A light that casts shadows; its brightness is set from the sky.
 fn sunlight() -> DirectionalLight {
-    DirectionalLight {
-        shadow_maps_enabled: true,
-        ..DirectionalLight::default()
-    }
+    DirectionalLight { shadow_maps_enabled: true, ..DirectionalLight::default() }
 }
 
 /// Shadows for a scene of the size of a river: three cascades, sharp for 15 m, ending at 200 m.
@@ -159,10 +132,7 @@ mod tests {
 
     #[test]
     fn a_sane_sky_is_left_alone() {
-        assert_eq!(
-            Sky::default().usable(Entity::PLACEHOLDER, &mut Reported::default()),
-            Sky::default()
-        );
+        assert_eq!(Sky::default().usable(Entity::PLACEHOLDER, &mut Reported::default()), Sky::default());
     }
 
     #[test]
@@ -178,13 +148,7 @@ mod tests {
         };
         let usable = bad.usable(Entity::PLACEHOLDER, &mut Reported::default());
         assert_eq!(usable.sun_elevation, Sky::default().sun_elevation);
-        assert_eq!(
-            (usable.turbidity, usable.cloud_cover, usable.resolution),
-            (10.0, 0.0, 64)
-        );
-        assert_eq!(
-            usable,
-            usable.usable(Entity::PLACEHOLDER, &mut Reported::default())
-        );
+        assert_eq!((usable.turbidity, usable.cloud_cover, usable.resolution), (10.0, 0.0, 64));
+        assert_eq!(usable, usable.usable(Entity::PLACEHOLDER, &mut Reported::default()));
     }
 }

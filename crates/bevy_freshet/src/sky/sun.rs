@@ -98,10 +98,7 @@ pub(super) fn ground_illuminance(elevation: f32) -> f32 {
     let degrees = elevation.to_degrees().clamp(-18.0, 90.0);
     let x = degrees / 90.0;
     let lowest = SEGMENTS[SEGMENTS.len() - 1].1;
-    let [a, b, c, d] = SEGMENTS
-        .iter()
-        .find(|(from, _)| degrees >= *from)
-        .map_or(lowest, |(_, l)| *l);
+    let [a, b, c, d] = SEGMENTS.iter().find(|(from, _)| degrees >= *from).map_or(lowest, |(_, l)| *l);
     ops::powf(10.0, a + x * (b + x * (c + x * d)))
 }
 

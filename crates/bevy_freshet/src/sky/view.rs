@@ -30,30 +30,19 @@ pub struct SkyView {
 
 impl Default for SkyView {
     fn default() -> Self {
-        Self {
-            visibility: None,
-            exposure: Some(0.0),
-        }
+        Self { visibility: None, exposure: Some(0.0) }
     }
 }
 
 /// At night Bevy's default of 80 cd/m² would outshine everything.
 fn no_ambient_light() -> AmbientLight {
-    AmbientLight {
-        brightness: 0.0,
-        ..AmbientLight::default()
-    }
+    AmbientLight { brightness: 0.0, ..AmbientLight::default() }
 }
 
 /// Hands the maps and the exposure to the cameras.
 pub(super) fn show_sky(
     maps: Query<(Entity, &SkyMaps), With<Sky>>,
-    mut views: Query<(
-        &SkyView,
-        &mut Skybox,
-        &mut EnvironmentMapLight,
-        &mut Exposure,
-    )>,
+    mut views: Query<(&SkyView, &mut Skybox, &mut EnvironmentMapLight, &mut Exposure)>,
 ) {
     let Some(maps) = drawn(&maps) else { return };
     for (view, mut skybox, mut environment, mut exposure) in &mut views {
@@ -77,13 +66,7 @@ pub(super) fn show_sky(
 /// Gives the haze of each camera the colour of the horizon it looks at.
 pub(super) fn tint_fog(
     maps: Query<(Entity, &SkyMaps), With<Sky>>,
-    mut views: Query<(
-        Entity,
-        &SkyView,
-        &Exposure,
-        &GlobalTransform,
-        Option<&mut DistanceFog>,
-    )>,
+    mut views: Query<(Entity, &SkyView, &Exposure, &GlobalTransform, Option<&mut DistanceFog>)>,
     mut commands: Commands,
 ) {
     let Some(maps) = drawn(&maps) else { return };

@@ -31,7 +31,8 @@ pub(super) fn detail_tile() -> Image {
         size /= 2;
     }
     let extent = Extent3d { width: SIZE as u32, height: SIZE as u32, depth_or_array_layers: 1 };
-    let mut image = Image::new_uninit(extent, TextureDimension::D2, TextureFormat::Rgba16Float, RenderAssetUsages::RENDER_WORLD);
+    let mut image =
+        Image::new_uninit(extent, TextureDimension::D2, TextureFormat::Rgba16Float, RenderAssetUsages::RENDER_WORLD);
     image.texture_descriptor.label = Some("water_detail");
     image.texture_descriptor.mip_level_count = SIZE.ilog2() + 1;
     image.data = Some(data);

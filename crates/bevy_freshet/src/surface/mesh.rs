@@ -22,9 +22,8 @@ pub(super) fn nested_grid(cell: f32, cells: u32, rings: u32) -> Mesh {
     let half = cells as i32 / 2;
     let mut builder = Builder::default();
     for ring in 0..=rings {
-        let is_hole = |x: i32, z: i32| {
-            ring > 0 && (-half / 2..half / 2).contains(&x) && (-half / 2..half / 2).contains(&z)
-        };
+        let is_hole =
+            |x: i32, z: i32| ring > 0 && (-half / 2..half / 2).contains(&x) && (-half / 2..half / 2).contains(&z);
         for z in -half..half {
             for x in -half..half {
                 if !is_hole(x, z) {

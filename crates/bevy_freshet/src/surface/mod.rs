@@ -11,8 +11,8 @@ mod sync;
 mod viewer;
 mod write;
 
-pub(crate) use viewer::{ViewerData, Viewers};
 pub use viewer::NoWater;
+pub(crate) use viewer::{ViewerData, Viewers};
 
 use crate::schedule::WaterSystems;
 use bevy::{

@@ -1,8 +1,11 @@
 //! The cameras that see water.
 use super::sync::SurfaceOf;
-use crate::{report::Reported, reflection::MirrorCamera};
+use crate::{reflection::MirrorCamera, report::Reported};
 use bevy::{
-    camera::{Exposure, visibility::{RenderLayers, VisibleEntities}},
+    camera::{
+        Exposure,
+        visibility::{RenderLayers, VisibleEntities},
+    },
     core_pipeline::prepass::DepthPrepass,
     ecs::{query::QueryData, system::SystemParam},
     light::{EnvironmentMapLight, ShadowFilteringMethod, Skybox},
@@ -133,10 +136,7 @@ pub(super) fn report_missing_camera(
 /// Takes out of every camera's list the surfaces that belong to another camera.
 ///
 /// Render layers could do this too, but they are the game's, and there are too few.
-pub(super) fn show_each_viewer_its_own(
-    mut views: Query<(Entity, &mut VisibleEntities)>,
-    surfaces: Query<&SurfaceOf>,
-) {
+pub(super) fn show_each_viewer_its_own(mut views: Query<(Entity, &mut VisibleEntities)>, surfaces: Query<&SurfaceOf>) {
     if surfaces.is_empty() {
         return;
     }

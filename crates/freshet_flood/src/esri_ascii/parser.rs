@@ -14,10 +14,7 @@ pub(super) fn parse(text: &[u8]) -> Result<EsriGrid, ParseError> {
     let values = parse_values(&mut words, &header)?;
     let grid = Grid::new(header.size, header.cell_size, values)
         .map_err(|error| words.unexpected("a grid", error.to_string()))?;
-    Ok(EsriGrid {
-        corner: header.corner,
-        grid,
-    })
+    Ok(EsriGrid { corner: header.corner, grid })
 }
 
 fn parse_values(words: &mut Words, header: &Header) -> Result<Vec<f32>, ParseError> {
@@ -59,27 +56,13 @@ struct Header {
 }
 
 /// The keys, in lower case.
-const KEYS: [&str; 10] = [
-    "ncols",
-    "nrows",
-    "xllcorner",
-    "yllcorner",
-    "xllcenter",
-    "yllcenter",
-    "cellsize",
-    "dx",
-    "dy",
-    "nodata_value",
-];
+const KEYS: [&str; 10] =
+    ["ncols", "nrows", "xllcorner", "yllcorner", "xllcenter", "yllcenter", "cellsize", "dx", "dy", "nodata_value"];
 
 impl Header {
     fn parse(words: &mut Words) -> Result<Self, ParseError> {
         let entries = Entries::parse(words)?;
-        let cell_size = match (
-            entries.get("cellsize"),
-            entries.get("dx"),
-            entries.get("dy"),
-        ) {
+        let cell_size = match (entries.get("cellsize"), entries.get("dx"), entries.get("dy")) {
             (Some(size), None, None) => size,
             (None, Some(dx), Some(dy)) if dx.value == dy.value => dx,
             (None, Some(_), Some(dy)) => {
@@ -96,23 +79,15 @@ impl Header {
         let corner = |corner: &str, centre: &str| match (entries.get(corner), entries.get(centre)) {
             (Some(corner), None) => Ok(corner.value),
             (None, Some(centre)) => Ok(centre.value - cell_size.value / 2.0),
-            (Some(_), Some(also)) => {
-                Err(also.unexpected(format!("{corner} or {centre}, not both")))
-            }
+            (Some(_), Some(also)) => Err(also.unexpected(format!("{corner} or {centre}, not both"))),
             (None, None) => Err(words.missing(format!("{corner} (or {centre})"))),
         };
         let count = |key: &str| entries.get(key).ok_or_else(|| words.missing(key))?.count();
         Ok(Self {
             size: UVec2::new(count("ncols")?, count("nrows")?),
-            corner: DVec2::new(
-                corner("xllcorner", "xllcenter")?,
-                corner("yllcorner", "yllcenter")?,
-            ),
+            corner: DVec2::new(corner("xllcorner", "xllcenter")?, corner("yllcorner", "yllcenter")?),
             cell_size: cell_size.value as f32,
-            no_data: entries
-                .get("nodata_value")
-                .and_then(|entry| number(entry.word))
-                .unwrap_or(USUAL_NO_DATA),
+            no_data: entries.get("nodata_value").and_then(|entry| number(entry.word)).unwrap_or(USUAL_NO_DATA),
         })
     }
 }
@@ -129,16 +104,11 @@ impl Entry<'_> {
     /// The value as a number of rows or columns.
     fn count(&self) -> Result<u32, ParseError> {
         let fits = self.value.fract() == 0.0 && (1.0..=f64::from(u32::MAX)).contains(&self.value);
-        fits.then_some(self.value as u32)
-            .ok_or_else(|| self.unexpected("a whole number from 1 to 4294967295"))
+        fits.then_some(self.value as u32).ok_or_else(|| self.unexpected("a whole number from 1 to 4294967295"))
     }
 
     fn unexpected(&self, expected: impl Into<String>) -> ParseError {
-        ParseError {
-            line: self.line,
-            expected: expected.into(),
-            found: quote(self.word),
-        }
+        ParseError { line: self.line, expected: expected.into(), found: quote(self.word) }
     }
 }
 
@@ -150,10 +120,7 @@ impl<'a> Entries<'a> {
     fn parse(words: &mut Words<'a>) -> Result<Self, ParseError> {
         let mut entries = Self([None; KEYS.len()]);
         while let Some(key) = words.next_if(|word| number::<f32>(word).is_none()) {
-            let Some(index) = KEYS
-                .iter()
-                .position(|name| key.eq_ignore_ascii_case(name.as_bytes()))
-            else {
+            let Some(index) = KEYS.iter().position(|name| key.eq_ignore_ascii_case(name.as_bytes())) else {
                 let expected = format!("a number or one of the keys {}", KEYS.join(", "));
                 return Err(words.unexpected(expected, quote(key)));
             };
@@ -208,10 +175,7 @@ struct Words<'a> {
 impl<'a> Words<'a> {
     fn new(text: &'a [u8]) -> Self {
         let byte_order_mark = "\u{feff}".as_bytes();
-        Self {
-            rest: text.strip_prefix(byte_order_mark).unwrap_or(text),
-            line: 1,
-        }
+        Self { rest: text.strip_prefix(byte_order_mark).unwrap_or(text), line: 1 }
     }
 
     fn next(&mut self) -> Option<&'a [u8]> {
@@ -240,10 +204,6 @@ impl<'a> Words<'a> {
     }
 
     fn unexpected(&self, expected: impl Into<String>, found: impl Into<String>) -> ParseError {
-        ParseError {
-            line: self.line,
-            expected: expected.into(),
-            found: found.into(),
-        }
+        ParseError { line: self.line, expected: expected.into(), found: found.into() }
     }
 }

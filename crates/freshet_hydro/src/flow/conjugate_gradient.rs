@@ -49,10 +49,7 @@ impl Conductances<'_> {
             diagonal[b] -= conductance * share;
             share
         });
-        Factors {
-            lower: lower.collect(),
-            diagonal,
-        }
+        Factors { lower: lower.collect(), diagonal }
     }
 
     /// Solves the factorised system for `residual`.
@@ -154,11 +151,7 @@ mod tests {
         let mut anchors = vec![0.0; nodes as usize];
         anchors[0] = 1.0;
         let along = vec![1e3; edges.len()];
-        let chain = Conductances {
-            edges: &edges,
-            along,
-            anchors,
-        };
+        let chain = Conductances { edges: &edges, along, anchors };
         let right: Vec<f64> = chain.anchors.iter().map(|anchor| anchor * 7.0).collect();
         let mut x = vec![0.0; nodes as usize];
         assert!(chain.solve(&right, 0.0, &mut x));

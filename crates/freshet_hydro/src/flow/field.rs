@@ -21,21 +21,11 @@ pub struct FlowField {
 
 impl FlowField {
     /// Scales the head of unit drop to the discharge of the reach and derives everything from it.
-    pub(super) fn new(
-        bed: &Grid<f32>,
-        reach: &Reach,
-        network: &Network,
-        depths: &[f64],
-        head: &Head,
-    ) -> Self {
+    pub(super) fn new(bed: &Grid<f32>, reach: &Reach, network: &Network, depths: &[f64], head: &Head) -> Self {
         let k = &head.conductivity;
         let mut slopes = vec![glam::DVec2::ZERO; depths.len()];
         let mut discharges = Vec::new();
-        for ((slope, &[a, b]), &face) in head
-            .inner_slopes(network)
-            .zip(&network.edges)
-            .zip(&network.inner)
-        {
+        for ((slope, &[a, b]), &face) in head.inner_slopes(network).zip(&network.edges).zip(&network.inner) {
             let (a, b) = (a as usize, b as usize);
             slopes[a] += 0.5 * along(face.axis, slope);
             slopes[b] += 0.5 * along(face.axis, slope);
@@ -70,10 +60,7 @@ impl FlowField {
             head: heads,
             head_drop: head_drop as f32,
             reach_cells: depths.len(),
-            discharges: discharges
-                .into_iter()
-                .map(|(face, discharge)| (face, (discharge * scale) as f32))
-                .collect(),
+            discharges: discharges.into_iter().map(|(face, discharge)| (face, (discharge * scale) as f32)).collect(),
         }
     }
 
@@ -109,10 +96,7 @@ impl FlowField {
     }
 
     fn speeds(&self) -> impl Iterator<Item = f32> {
-        self.velocity
-            .values()
-            .iter()
-            .map(|velocity| velocity.length())
+        self.velocity.values().iter().map(|velocity| velocity.length())
     }
 
     /// Discharge through a section in m³/s, positive to the right-hand side of its direction.
@@ -120,10 +104,7 @@ impl FlowField {
     /// Summed over the cell faces it crosses, so every section that closes the channel has the discharge of the reach
     /// but for rounding.
     pub fn discharge_through(&self, section: &Section) -> f32 {
-        self.discharges
-            .iter()
-            .map(|(face, discharge)| face.crossing(&self.velocity, section) * discharge)
-            .sum()
+        self.discharges.iter().map(|(face, discharge)| face.crossing(&self.velocity, section) * discharge).sum()
     }
 
     /// Up to `count` sections across the river, evenly spaced in head between the two ends of the reach.
@@ -147,10 +128,7 @@ impl FlowField {
                 // The flow goes to the right of whoever walks along the section: `Section::normal`.
                 let along = -velocity.normalize_or_zero().perp();
                 let centre = self.velocity.position(cell);
-                Section::new(
-                    self.edge_of_flow(centre, -along),
-                    self.edge_of_flow(centre, along),
-                )
+                Section::new(self.edge_of_flow(centre, -along), self.edge_of_flow(centre, along))
             })
             .collect()
     }
@@ -158,9 +136,7 @@ impl FlowField {
     /// The first point without velocity on the way from `point` in `direction`, a unit vector.
     fn edge_of_flow(&self, mut point: Vec2, direction: Vec2) -> Vec2 {
         let step = 0.25 * self.velocity.cell_size() * direction;
-        let flows = |point: Vec2| {
-            self.velocity.cell_at(point).is_some() && self.velocity.sample(point) != Vec2::ZERO
-        };
+        let flows = |point: Vec2| self.velocity.cell_at(point).is_some() && self.velocity.sample(point) != Vec2::ZERO;
         while step != Vec2::ZERO && flows(point) {
             point += step;
         }
@@ -173,12 +149,7 @@ impl FlowField {
 /// `bed` (both in metres; where there are no data, and outside the grid, no depth). The section has finite ends.
 ///
 /// `velocity` may come from [`steady_flow`](super::steady_flow) or from a painter; the two grids share their centre.
-pub fn discharge_across(
-    velocity: &Grid<Vec2>,
-    bed: &Grid<f32>,
-    level: f32,
-    section: &Section,
-) -> f32 {
+pub fn discharge_across(velocity: &Grid<Vec2>, bed: &Grid<f32>, level: f32, section: &Section) -> f32 {
     // A tenth of a cell is fine enough for the midpoint rule on pieces of parabolas.
     let steps = (section.length() / (0.1 * bed.cell_size())).ceil().max(1.0);
     let width = section.length() / steps;

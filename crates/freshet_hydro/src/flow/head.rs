@@ -71,9 +71,7 @@ impl Head {
                 mean * REGULARISATION * REGULARISATION
             });
             let terms = conveyance.iter().zip(&slopes_squared);
-            for (conductivity, (conveyance, slope_squared)) in
-                head.conductivity.iter_mut().zip(terms)
-            {
+            for (conductivity, (conveyance, slope_squared)) in head.conductivity.iter_mut().zip(terms) {
                 *conductivity = conveyance / (slope_squared + epsilon_squared).sqrt().sqrt();
             }
         }
@@ -83,10 +81,7 @@ impl Head {
     /// Solves the linear problem for the present conductivities. Returns whether that succeeded.
     fn relax(&mut self, network: &Network, reduction: f64) -> bool {
         let k = &self.conductivity;
-        let along = network
-            .edges
-            .iter()
-            .map(|&[a, b]| 0.5 * (k[a as usize] + k[b as usize]));
+        let along = network.edges.iter().map(|&[a, b]| 0.5 * (k[a as usize] + k[b as usize]));
         let mut anchors = vec![0.0; k.len()];
         let mut right = vec![0.0; k.len()];
         for open in &network.open {
@@ -95,21 +90,14 @@ impl Head {
             anchors[open.cell as usize] += conductance;
             right[open.cell as usize] += conductance * known_head(open.end);
         }
-        let conductances = Conductances {
-            edges: &network.edges,
-            along: along.collect(),
-            anchors,
-        };
+        let conductances = Conductances { edges: &network.edges, along: along.collect(), anchors };
         conductances.solve(&right, reduction, &mut self.values)
     }
 
     /// Fall of the head over every inner face, from the cell before to the cell after, per cell.
     pub fn inner_slopes<'a>(&'a self, network: &'a Network) -> impl Iterator<Item = f64> + 'a {
         let head = &self.values;
-        network
-            .edges
-            .iter()
-            .map(|&[a, b]| head[a as usize] - head[b as usize])
+        network.edges.iter().map(|&[a, b]| head[a as usize] - head[b as usize])
     }
 
     /// Fall of the head over every open face, from west to east or from north to south, per cell.

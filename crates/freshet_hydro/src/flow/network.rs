@@ -58,11 +58,7 @@ impl Network {
         }
         for (end, section) in [(End::Inflow, inflow), (End::Outflow, outflow)] {
             if !cuts.iter().any(|cut| cut.end == end) {
-                return Err(FlowError::NoWater {
-                    end,
-                    section: *section,
-                    extent: wet.extent(),
-                });
+                return Err(FlowError::NoWater { end, section: *section, extent: wet.extent() });
             }
         }
         Self::between(wet, &mut parts, &pairs, &cuts)
@@ -94,24 +90,14 @@ impl Network {
         }
         let (inner, edges) = inner_faces(pairs, &number);
         let open = open_faces(cuts, &number)?;
-        Ok(Self {
-            cells,
-            inner,
-            edges,
-            open,
-        })
+        Ok(Self { cells, inner, edges, open })
     }
 }
 
 /// The faces between two cells that have a number, sorted by the larger number, and those numbers.
-fn inner_faces(
-    pairs: &[(Face, usize, usize)],
-    number: &[Option<u32>],
-) -> (Vec<Face>, Vec<[u32; 2]>) {
-    let mut inner: Vec<(Face, [u32; 2])> = pairs
-        .iter()
-        .filter_map(|&(face, before, after)| Some((face, [number[before]?, number[after]?])))
-        .collect();
+fn inner_faces(pairs: &[(Face, usize, usize)], number: &[Option<u32>]) -> (Vec<Face>, Vec<[u32; 2]>) {
+    let mut inner: Vec<(Face, [u32; 2])> =
+        pairs.iter().filter_map(|&(face, before, after)| Some((face, [number[before]?, number[after]?]))).collect();
     inner.sort_by_key(|(_, [before, after])| (*after, *before));
     inner.into_iter().unzip()
 }
@@ -127,12 +113,7 @@ fn open_faces(cuts: &[Cut], number: &[Option<u32>]) -> Result<Vec<OpenFace>, Flo
             (None, Some(after)) => (after, true),
             (None, None) => continue,
         };
-        open.push(OpenFace {
-            face: cut.face,
-            end: cut.end,
-            cell,
-            cell_is_after,
-        });
+        open.push(OpenFace { face: cut.face, end: cut.end, cell, cell_is_after });
     }
     Ok(open)
 }
@@ -144,9 +125,7 @@ struct Parts {
 
 impl Parts {
     fn new(count: usize) -> Self {
-        Self {
-            parent: (0..count).collect(),
-        }
+        Self { parent: (0..count).collect() }
     }
 
     fn root(&mut self, mut cell: usize) -> usize {

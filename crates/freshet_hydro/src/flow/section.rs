@@ -105,11 +105,6 @@ pub(super) fn faces<T>(cells: &Grid<T>) -> impl Iterator<Item = Face> {
     let size = cells.size();
     [Axis::X, Axis::Z].into_iter().flat_map(move |axis| {
         let end = size + axis.unit();
-        (0..end.y).flat_map(move |z| {
-            (0..end.x).map(move |x| Face {
-                axis,
-                after: UVec2::new(x, z),
-            })
-        })
+        (0..end.y).flat_map(move |z| (0..end.x).map(move |x| Face { axis, after: UVec2::new(x, z) }))
     })
 }

@@ -34,25 +34,14 @@ impl System {
     /// Reads the text of `/etc/os-release` (see the manual page of that name).
     pub fn from_os_release(text: &str) -> Self {
         let value = |key: &str| {
-            let line = text
-                .lines()
-                .find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
-            line.unwrap_or_default()
-                .trim()
-                .trim_matches(['"', '\''])
-                .to_owned()
+            let line = text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
+            line.unwrap_or_default().trim().trim_matches(['"', '\'']).to_owned()
         };
         let names = format!("{} {}", value("ID"), value("ID_LIKE"));
         let named = |wanted: &[&str]| names.split_whitespace().any(|name| wanted.contains(&name));
         if named(&["debian", "ubuntu"]) {
             let debian = value("DEBIAN_CODENAME");
-            Self::Debian {
-                codename: if debian.is_empty() {
-                    value("VERSION_CODENAME")
-                } else {
-                    debian
-                },
-            }
+            Self::Debian { codename: if debian.is_empty() { value("VERSION_CODENAME") } else { debian } }
         } else if named(&["fedora", "rhel", "centos"]) {
             Self::Fedora
         } else if named(&["arch"]) {
@@ -114,9 +103,7 @@ mod tests {
     use super::*;
 
     fn debian(codename: &str) -> System {
-        System::Debian {
-            codename: codename.into(),
-        }
+        System::Debian { codename: codename.into() }
     }
 
     #[test]
@@ -124,22 +111,12 @@ mod tests {
         let system = System::from_os_release;
         let bookworm = "PRETTY_NAME=\"Debian GNU/Linux 12 (bookworm)\"\nVERSION_CODENAME=bookworm\nID=debian\n";
         assert_eq!(system(bookworm), debian("bookworm"));
-        assert_eq!(
-            system("ID=ubuntu\nID_LIKE=debian\nVERSION_CODENAME=noble\n"),
-            debian("noble")
-        );
-        let mint_on_debian =
-            "ID=linuxmint\nID_LIKE=\"debian\"\nVERSION_CODENAME=faye\nDEBIAN_CODENAME=bookworm\n";
+        assert_eq!(system("ID=ubuntu\nID_LIKE=debian\nVERSION_CODENAME=noble\n"), debian("noble"));
+        let mint_on_debian = "ID=linuxmint\nID_LIKE=\"debian\"\nVERSION_CODENAME=faye\nDEBIAN_CODENAME=bookworm\n";
         assert_eq!(system(mint_on_debian), debian("bookworm"));
-        assert_eq!(
-            system("ID=\"rocky\"\nID_LIKE=\"rhel centos fedora\"\n"),
-            System::Fedora
-        );
+        assert_eq!(system("ID=\"rocky\"\nID_LIKE=\"rhel centos fedora\"\n"), System::Fedora);
         assert_eq!(system("ID=manjaro\nID_LIKE=arch\n"), System::Arch);
-        assert_eq!(
-            system("ID=\"opensuse-tumbleweed\"\nID_LIKE=\"opensuse suse\"\n"),
-            System::Suse
-        );
+        assert_eq!(system("ID=\"opensuse-tumbleweed\"\nID_LIKE=\"opensuse suse\"\n"), System::Suse);
         assert_eq!(system("ID=nixos\n"), System::OtherLinux);
         assert_eq!(system(""), System::OtherLinux);
     }

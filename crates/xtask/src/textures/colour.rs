@@ -21,9 +21,5 @@ pub fn smoothstep(from: f64, to: f64, value: f64) -> f64 {
 
 /// The sRGB transfer function (IEC 61966-2-1), 0 to 1.
 pub fn to_srgb(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
-    }
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 }
 }

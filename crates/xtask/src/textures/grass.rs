@@ -27,10 +27,7 @@ pub fn grass() -> Picture {
 
     let ground = Picture::from_fn(SUPERSAMPLED, |point| {
         let shade = 0.5 + 0.3 * litter.at(point) + 0.2 * rng.f64();
-        Texel {
-            albedo: scaled([0.050, 0.044, 0.024], shade),
-            alpha: 0.0,
-        }
+        Texel { albedo: scaled([0.050, 0.044, 0.024], shade), alpha: 0.0 }
     });
     let mut canvas = Canvas::over(ground);
     for _ in 0..BLADES {
@@ -41,8 +38,7 @@ pub fn grass() -> Picture {
         let lush = 0.5 + 0.5 * lushness.at(root);
         let outward = libm::atan2(tussock.offset[1], tussock.offset[0]);
         let spread = 1.2 + 1.9 * middle;
-        let lean =
-            outward + 0.9 * wind.at(root) + spread * (rng.f64() + rng.f64() + rng.f64() - 1.5);
+        let lean = outward + 0.9 * wind.at(root) + spread * (rng.f64() + rng.f64() + rng.f64() - 1.5);
         let size = (0.45 + 0.55 * rng.f64()) * (0.6 + 0.4 * middle) * (0.85 + 0.3 * lush);
         // Some stand upright, and cover their own tussock.
         let reach = 0.085 * size * (0.15 + 0.85 * rng.f64());
@@ -51,16 +47,8 @@ pub fn grass() -> Picture {
         let ribbon = Ribbon {
             curve: Curve([
                 [root[0], root[1], 0.0],
-                [
-                    root[0] + 0.45 * reach * libm::cos(lean),
-                    root[1] + 0.45 * reach * libm::sin(lean),
-                    1.5 * crown,
-                ],
-                [
-                    root[0] + reach * libm::cos(drift),
-                    root[1] + reach * libm::sin(drift),
-                    0.65 * crown,
-                ],
+                [root[0] + 0.45 * reach * libm::cos(lean), root[1] + 0.45 * reach * libm::sin(lean), 1.5 * crown],
+                [root[0] + reach * libm::cos(drift), root[1] + reach * libm::sin(drift), 0.65 * crown],
             ]),
             width: 0.0052 * (0.7 + 0.6 * rng.f64()),
             outline: |along| (1.0 - along * along) * (0.6 + 0.4 * along),
@@ -70,29 +58,18 @@ pub fn grass() -> Picture {
         let fold = 0.22 * libm::cos(lean - TAU / 8.0);
         canvas.draw(&ribbon, |place| {
             let depth = 0.08 + 1.1 * place.z;
-            let tip = mix(
-                colour,
-                [0.20, 0.17, 0.075],
-                0.45 * smoothstep(0.6, 1.0, place.along),
-            );
+            let tip = mix(colour, [0.20, 0.17, 0.075], 0.45 * smoothstep(0.6, 1.0, place.along));
             scaled(tip, depth * place.folded(1.12, fold))
         });
     }
-    canvas
-        .finish()
-        .halved()
-        .with_mean_albedo(ALBEDO)
-        .with_full_height()
+    canvas.finish().halved().with_mean_albedo(ALBEDO).with_full_height()
 }
 
 /// Green to olive, more yellow where less lush, and one in seven dead.
 fn blade_colour(rng: &mut Rng, lush: f64) -> Colour {
     let tone = 0.8 + 0.45 * rng.f64();
-    let living = mix(
-        [0.135, 0.135, 0.036],
-        [0.070, 0.125, 0.030],
-        (0.7 * lush + 0.6 * rng.f64() - 0.1).clamp(0.0, 1.0),
-    );
+    let living =
+        mix([0.135, 0.135, 0.036], [0.070, 0.125, 0.030], (0.7 * lush + 0.6 * rng.f64() - 0.1).clamp(0.0, 1.0));
     let dead = mix([0.26, 0.205, 0.105], [0.15, 0.115, 0.06], rng.f64());
     scaled(if rng.f64() < 0.14 { dead } else { living }, tone)
 }

@@ -17,14 +17,8 @@ pub struct Fractal {
 impl Fractal {
     /// Noise whose coarsest features repeat `frequency` times along x and y.
     pub fn new(rng: &mut Rng, frequency: [f64; 2], octaves: usize) -> Self {
-        let octaves = (0..octaves)
-            .map(|_| {
-                (
-                    Perlin::new(rng.u32(..)),
-                    std::array::from_fn(|_| 100.0 * rng.f64()),
-                )
-            })
-            .collect();
+        let octaves =
+            (0..octaves).map(|_| (Perlin::new(rng.u32(..)), std::array::from_fn(|_| 100.0 * rng.f64()))).collect();
         Self { octaves, frequency }
     }
 
@@ -35,18 +29,10 @@ impl Fractal {
         let mut gain = 1.0;
         for (octave, middle) in &self.octaves {
             let [radius_x, radius_y] = self.frequency.map(|frequency| frequency / (gain * TAU));
-            let (a, b, c, d) = (
-                radius_x * cos_x,
-                radius_x * sin_x,
-                radius_y * cos_y,
-                radius_y * sin_y,
-            );
+            let (a, b, c, d) = (radius_x * cos_x, radius_x * sin_x, radius_y * cos_y, radius_y * sin_y);
             // Turned out of line with the noise's lattice, which would show as streaks along x and y.
             let turned = [a + b + c + d, a + b - c - d, a - b + c - d, a - b - c + d];
-            sum += gain
-                * octave.get(std::array::from_fn::<_, 4, _>(|i| {
-                    middle[i] + turned[i] / 2.0
-                }));
+            sum += gain * octave.get(std::array::from_fn::<_, 4, _>(|i| middle[i] + turned[i] / 2.0));
             gain /= 2.0;
         }
         sum
@@ -68,9 +54,7 @@ impl Ripples {
             let number = mean.map(|mean| (mean + spread * (rng.f64() + rng.f64() - 1.0)).round());
             (number, TAU * rng.f64())
         };
-        Self {
-            waves: (0..count).map(|_| wave()).collect(),
-        }
+        Self { waves: (0..count).map(|_| wave()).collect() }
     }
 
     /// Phase in radians (0 on a crest) and amplitude, with a mean square of 1, of the ripples at a point.
@@ -81,10 +65,7 @@ impl Ripples {
             sine += sin;
             cosine += cos;
         }
-        (
-            libm::atan2(sine, cosine),
-            (sine * sine + cosine * cosine).sqrt() / (self.waves.len() as f64).sqrt(),
-        )
+        (libm::atan2(sine, cosine), (sine * sine + cosine * cosine).sqrt() / (self.waves.len() as f64).sqrt())
     }
 }
 
@@ -110,9 +91,7 @@ pub struct Nearest {
 impl Cells {
     /// `boxes[0]` × `boxes[1]` cells.
     pub fn new(rng: &mut Rng, boxes: [usize; 2]) -> Self {
-        let points = (0..boxes[0] * boxes[1])
-            .map(|_| [rng.f64(), rng.f64()])
-            .collect();
+        let points = (0..boxes[0] * boxes[1]).map(|_| [rng.f64(), rng.f64()]).collect();
         Self { boxes, points }
     }
 
@@ -126,28 +105,16 @@ impl Cells {
         let [columns, rows] = self.boxes.map(|count| count as isize);
         let [x, y] = [point[0] * columns as f64, point[1] * rows as f64];
         let (column, row) = (x.floor() as isize, y.floor() as isize);
-        let mut nearest = Nearest {
-            index: 0,
-            offset: [0.0; 2],
-            distance: f64::INFINITY,
-            border: 0.0,
-        };
+        let mut nearest = Nearest { index: 0, offset: [0.0; 2], distance: f64::INFINITY, border: 0.0 };
         let mut second = f64::INFINITY;
-        for (row, column) in
-            (row - 2..=row + 2).flat_map(|row| (column - 2..=column + 2).map(move |c| (row, c)))
-        {
+        for (row, column) in (row - 2..=row + 2).flat_map(|row| (column - 2..=column + 2).map(move |c| (row, c))) {
             let index = (row.rem_euclid(rows) * columns + column.rem_euclid(columns)) as usize;
             let [in_x, in_y] = self.points[index];
             let offset = [x - column as f64 - in_x, y - row as f64 - in_y];
             let distance = (offset[0] * offset[0] + offset[1] * offset[1]).sqrt();
             if distance < nearest.distance {
                 second = nearest.distance;
-                nearest = Nearest {
-                    index,
-                    offset,
-                    distance,
-                    border: 0.0,
-                };
+                nearest = Nearest { index, offset, distance, border: 0.0 };
             } else {
                 second = second.min(distance);
             }

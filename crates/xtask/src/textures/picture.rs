@@ -40,14 +40,8 @@ impl Picture {
     /// Ground: evaluates `texel` at the middle of each texel; both coordinates run from 0 to 1, y downwards.
     pub fn from_fn(side: usize, mut texel: impl FnMut([f64; 2]) -> Texel) -> Self {
         let middle = |index: usize| (index as f64 + 0.5) / side as f64;
-        let texels = (0..side * side)
-            .map(|index| texel([middle(index % side), middle(index / side)]))
-            .collect();
-        Self {
-            side,
-            texels,
-            alpha: Alpha::Height,
-        }
+        let texels = (0..side * side).map(|index| texel([middle(index % side), middle(index / side)])).collect();
+        Self { side, texels, alpha: Alpha::Height }
     }
 
     /// How much a texel's colour counts.
@@ -65,34 +59,23 @@ impl Picture {
             .map(|index| {
                 let corner = index / side * 2 * self.side + index % side * 2;
                 let four = [0, 1, self.side, self.side + 1].map(|step| self.texels[corner + step]);
-                let weight = four
-                    .iter()
-                    .map(|texel| self.weight(texel))
-                    .sum::<f64>()
-                    .max(f64::MIN_POSITIVE);
+                let weight = four.iter().map(|texel| self.weight(texel)).sum::<f64>().max(f64::MIN_POSITIVE);
                 let share = |texel: &Texel| self.weight(texel) / weight;
                 Texel {
-                    albedo: std::array::from_fn(|c| {
-                        four.iter().map(|t| share(t) * t.albedo[c]).sum()
-                    }),
+                    albedo: std::array::from_fn(|c| four.iter().map(|t| share(t) * t.albedo[c]).sum()),
                     alpha: four.iter().map(|texel| texel.alpha).sum::<f64>() / 4.0,
                 }
             })
             .collect();
-        Self {
-            side,
-            texels,
-            alpha: self.alpha,
-        }
+        Self { side, texels, alpha: self.alpha }
     }
 
     /// Scales each channel so that the picture reflects `mean` on average.
     pub fn with_mean_albedo(mut self, mean: Colour) -> Self {
         let sum = |value: &dyn Fn(&Texel) -> f64| -> f64 { self.texels.iter().map(value).sum() };
         let weight = sum(&|texel| self.weight(texel));
-        let gain: Colour = std::array::from_fn(|c| {
-            mean[c] * weight / sum(&|texel| self.weight(texel) * texel.albedo[c])
-        });
+        let gain: Colour =
+            std::array::from_fn(|c| mean[c] * weight / sum(&|texel| self.weight(texel) * texel.albedo[c]));
         for texel in &mut self.texels {
             texel.albedo = std::array::from_fn(|c| (gain[c] * texel.albedo[c]).clamp(0.0, 1.0));
         }
@@ -135,12 +118,8 @@ impl Picture {
             .filter(|&neighbour| known[neighbour])
             .collect();
         let share = 1.0 / neighbours.len() as f64;
-        let mean = std::array::from_fn(|c| {
-            neighbours
-                .iter()
-                .map(|&neighbour| share * self.texels[neighbour].albedo[c])
-                .sum()
-        });
+        let mean =
+            std::array::from_fn(|c| neighbours.iter().map(|&neighbour| share * self.texels[neighbour].albedo[c]).sum());
         (!neighbours.is_empty()).then_some(mean)
     }
 
@@ -152,14 +131,8 @@ impl Picture {
             ((255.0 * value / step).round() * step).min(255.0) as u8
         };
         let bytes = |texel: &Texel| {
-            let [red, green, blue] = texel
-                .albedo
-                .map(|channel| rounded(colour::to_srgb(channel)));
-            let alpha = if texel.alpha >= 1.0 {
-                255
-            } else {
-                rounded(texel.alpha)
-            };
+            let [red, green, blue] = texel.albedo.map(|channel| rounded(colour::to_srgb(channel)));
+            let alpha = if texel.alpha >= 1.0 { 255 } else { rounded(texel.alpha) };
             [red, green, blue, alpha]
         };
         self.texels.iter().flat_map(bytes).collect()

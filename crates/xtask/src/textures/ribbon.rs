@@ -22,9 +22,7 @@ impl Curve {
     /// The direction there, in the plane of the picture, of length 1.
     fn heading(&self, along: f64) -> [f64; 2] {
         let [root, control, tip] = self.0;
-        let [x, y, _] = std::array::from_fn(|i| {
-            (1.0 - along) * (control[i] - root[i]) + along * (tip[i] - control[i])
-        });
+        let [x, y, _] = std::array::from_fn(|i| (1.0 - along) * (control[i] - root[i]) + along * (tip[i] - control[i]));
         let length = (x * x + y * y).sqrt().max(f64::MIN_POSITIVE);
         [x / length, y / length]
     }
@@ -76,15 +74,8 @@ pub struct Canvas(Picture);
 impl Canvas {
     /// An empty canvas of `side` × `side` texels, for a cut-out; ribbons end at its edges.
     pub fn clear(side: usize) -> Self {
-        let nothing = Texel {
-            albedo: [0.0; 3],
-            alpha: f64::NEG_INFINITY,
-        };
-        Self(Picture {
-            side,
-            texels: vec![nothing; side * side],
-            alpha: Alpha::Coverage,
-        })
+        let nothing = Texel { albedo: [0.0; 3], alpha: f64::NEG_INFINITY };
+        Self(Picture { side, texels: vec![nothing; side * side], alpha: Alpha::Coverage })
     }
 
     /// Starts from a tile of ground; ribbons that leave it come in again on the other side.
@@ -104,23 +95,13 @@ impl Canvas {
             let half = 0.5 * ribbon.width * (ribbon.outline)(along);
             let side_steps = (2.0 * half * density).ceil() as usize;
             for side_step in 0..=side_steps {
-                let across = if side_steps == 0 {
-                    0.0
-                } else {
-                    2.0 * side_step as f64 / side_steps as f64 - 1.0
-                };
-                let (x, y) = (
-                    middle_x - heading_y * half * across,
-                    middle_y + heading_x * half * across,
-                );
+                let across = if side_steps == 0 { 0.0 } else { 2.0 * side_step as f64 / side_steps as f64 - 1.0 };
+                let (x, y) = (middle_x - heading_y * half * across, middle_y + heading_x * half * across);
                 let place = Place { along, across, z };
                 if let Some(texel) = self.texel(x, y)
                     && texel.alpha < place.z
                 {
-                    *texel = Texel {
-                        albedo: shade(place),
-                        alpha: place.z,
-                    };
+                    *texel = Texel { albedo: shade(place), alpha: place.z };
                 }
             }
         }

@@ -16,10 +16,7 @@ const ALBEDO: [f64; 3] = [0.44, 0.38, 0.29];
 pub fn sand() -> Picture {
     let mut rng = Rng::with_seed(11);
     let ripples = Ripples::new(&mut rng, [7.0, 23.0], 5.0, 48);
-    let bend = [
-        Fractal::new(&mut rng, [3.0; 2], 3),
-        Fractal::new(&mut rng, [3.0; 2], 3),
-    ];
+    let bend = [Fractal::new(&mut rng, [3.0; 2], 3), Fractal::new(&mut rng, [3.0; 2], 3)];
     let swells = Fractal::new(&mut rng, [7.0; 2], 4);
     let sorting = Fractal::new(&mut rng, [14.0; 2], 5);
     let lumps = Fractal::new(&mut rng, [70.0; 2], 3);
@@ -36,11 +33,7 @@ pub fn sand() -> Picture {
 
         // Wind sorts pale quartz onto the crests and heavy dark minerals into the troughs.
         let sorted = 0.55 * ripple + 0.8 * sorting.at(bent) + 0.9 * lump;
-        let albedo = mix(
-            [0.31, 0.25, 0.175],
-            [0.54, 0.48, 0.38],
-            smoothstep(-1.7, 1.7, sorted),
-        );
+        let albedo = mix([0.31, 0.25, 0.175], [0.54, 0.48, 0.38], smoothstep(-1.7, 1.7, sorted));
         let albedo = scaled(albedo, 1.0 + 0.50 * grain + 0.06 * swell);
         let albedo = match rng.f64() {
             rare if rare < 0.014 => scaled(albedo, 0.2),
@@ -48,10 +41,7 @@ pub fn sand() -> Picture {
             rare if rare < 0.030 => mix(albedo, [0.42, 0.22, 0.12], 0.7),
             _ => albedo,
         };
-        Texel {
-            albedo,
-            alpha: height,
-        }
+        Texel { albedo, alpha: height }
     })
     .halved()
     .with_mean_albedo(ALBEDO)

@@ -8,19 +8,9 @@ struct Committed {
 
 impl Committed {
     fn read(texture: &Texture) -> Self {
-        let picture = image::open(texture.path())
-            .expect(texture.file)
-            .into_rgba8();
-        assert_eq!(
-            picture.width(),
-            picture.height(),
-            "{} is square",
-            texture.file
-        );
-        Self {
-            side: picture.width() as usize,
-            rgba: picture.into_raw(),
-        }
+        let picture = image::open(texture.path()).expect(texture.file).into_rgba8();
+        assert_eq!(picture.width(), picture.height(), "{} is square", texture.file);
+        Self { side: picture.width() as usize, rgba: picture.into_raw() }
     }
 
     fn value(&self, column: usize, row: usize, channel: usize) -> f64 {
@@ -40,10 +30,7 @@ impl Committed {
     }
 
     fn mean(&self, difference: impl Fn(usize) -> f64) -> f64 {
-        (0..self.side)
-            .map(|index| difference(index).abs())
-            .sum::<f64>()
-            / self.side as f64
+        (0..self.side).map(|index| difference(index).abs()).sum::<f64>() / self.side as f64
     }
 }
 
@@ -55,11 +42,7 @@ fn committed_files_are_what_the_command_paints() {
         assert_eq!(painted.side, committed.side, "{}", texture.file);
         // Not `assert_eq`, which would print a million numbers.
         let same = painted.to_rgba(texture.step) == committed.rgba;
-        assert!(
-            same,
-            "{} is outdated: run `cargo xtask assets` and look at it",
-            texture.file
-        );
+        assert!(same, "{} is outdated: run `cargo xtask assets` and look at it", texture.file);
     }
 }
 
@@ -74,11 +57,7 @@ fn tiles_have_no_seams() {
             let across = |column| committed.step_across(column, channel);
             let down = |row| committed.step_down(row, channel);
             for (edge, inside) in [(across(last), inside(&across)), (down(last), inside(&down))] {
-                assert!(
-                    edge <= inside,
-                    "{} channel {channel}: {edge} over the edge, {inside} inside",
-                    texture.file
-                );
+                assert!(edge <= inside, "{} channel {channel}: {edge} over the edge, {inside} inside", texture.file);
             }
         }
     }
@@ -92,17 +71,9 @@ fn cut_outs_keep_clear_of_all_edges_but_the_bottom() {
         for index in 0..committed.side {
             let edges = [(index, 0), (0, index), (last, index)];
             let covered = edges.map(|(column, row)| committed.value(column, row, 3) > 0.0);
-            assert_eq!(
-                covered, [false; 3],
-                "{} is cut off at {index}",
-                texture.file
-            );
+            assert_eq!(covered, [false; 3], "{} is cut off at {index}", texture.file);
         }
-        assert!(
-            (0..=last).any(|column| committed.value(column, last, 3) == 255.0),
-            "{} stands",
-            texture.file
-        );
+        assert!((0..=last).any(|column| committed.value(column, last, 3) == 255.0), "{} stands", texture.file);
     }
 }
 
