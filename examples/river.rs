@@ -185,7 +185,7 @@ fn light(mut commands: Commands, scene: Res<Scene>, canvas: Res<Canvas>) {
     commands.spawn((
         Camera3d::default(),
         (Hdr, Tonemapping::TonyMcMapface),
-        SkyView { visibility: Some(1500.0), ..default() },
+        SkyView { visibility: Some(2500.0), exposure: Some(0.3), ..default() },
         canvas.target(),
         FreeCamera::default(),
         Transform::from_translation(scene.eye).looking_at(scene.target, Vec3::Y),

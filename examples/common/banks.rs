@@ -84,7 +84,8 @@ pub fn spawn_banks(
 }
 
 fn seen_within(far: f32) -> VisibilityRange {
-    VisibilityRange { start_margin: 0.0..0.0, end_margin: 0.8 * far..far, use_aabb: false }
+    // Without a cross-fade, which needs the same dither in the depth prepass that water asks for.
+    VisibilityRange::abrupt(0.0, far)
 }
 
 /// The meshes: a few of each sort, which stand again and again.

@@ -59,7 +59,7 @@ impl Bodies {
             cube: meshes.add(crate_mesh()),
             log: meshes.add(Cylinder::new(LOG_RADIUS, LOG_LENGTH)),
             hull: meshes.add(mesh_of(&hull_points(1.0, 0.0), true)),
-            deck: meshes.add(mesh_of(&hull_points(0.86, 0.12), false)),
+            deck: meshes.add(mesh_of(&hull_points(0.86, 0.42), false)),
             checkered,
             wood,
             bark: materials.add(StandardMaterial {
@@ -164,7 +164,12 @@ fn mesh_of(points: &[Vec3], outward: bool) -> Mesh {
 fn crate_mesh() -> Mesh {
     let bar = 0.12;
     let side = CRATE_SIZE - bar * 0.5;
-    let mut mesh = Mesh::from(Cuboid::from_length(side));
+    let tinted = |mesh: Mesh, tint: f32| {
+        let color = [tint, tint, tint, 1.0];
+        let colors = vec![color; mesh.count_vertices()];
+        mesh.with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+    };
+    let mut mesh = tinted(Mesh::from(Cuboid::from_length(side)), 0.6);
     let reach = (CRATE_SIZE - bar) / 2.0;
     for axis in 0..3 {
         for corner in [vec2(1.0, 1.0), vec2(1.0, -1.0), vec2(-1.0, 1.0), vec2(-1.0, -1.0)] {
@@ -173,7 +178,7 @@ fn crate_mesh() -> Mesh {
             let mut place = Vec3::ZERO;
             place[(axis + 1) % 3] = corner.x * reach;
             place[(axis + 2) % 3] = corner.y * reach;
-            let beam = Mesh::from(Cuboid::from_size(size)).translated_by(place);
+            let beam = tinted(Mesh::from(Cuboid::from_size(size)).translated_by(place), 1.0);
             if let Err(error) = mesh.merge(&beam) {
                 warn!("a crate lacks a beam: {error}");
             }

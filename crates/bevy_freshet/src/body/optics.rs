@@ -77,8 +77,8 @@ impl WaterOptics {
 
     /// Pure water (Pope and Fry 1997), without scattering.
     pub const PURE: Self = Self::BASE;
-    /// A lowland river: 4 mg/m³ chlorophyll, dissolved organics 0.7 1/m, 3 g/m³ sediment.
-    pub const RIVER: Self = Self::made_of(Vec3::new(0.4113, 0.2593, 0.8242), Vec3::new(0.03608, 0.03658, 0.03788));
+    /// A clear lowland river: 2 mg/m³ chlorophyll, dissolved organics 0.28 1/m, 1.2 g/m³ sediment.
+    pub const RIVER: Self = Self::made_of(Vec3::new(0.37435, 0.14227, 0.35741), Vec3::new(0.01645, 0.01695, 0.01825));
     /// A clear lake: 3 mg/m³ chlorophyll, dissolved organics 0.4 1/m, 0.6 g/m³ sediment.
     pub const LAKE: Self = Self::made_of(Vec3::new(0.3835, 0.1652, 0.4571), Vec3::new(0.01182, 0.01232, 0.01362));
     /// The open ocean: 0.2 mg/m³ chlorophyll, dissolved organics 0.02 1/m.
@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn presets_are_what_their_constituents_make() {
         for (preset, chlorophyll, dissolved_organics, sediment) in [
-            (WaterOptics::RIVER, 4.0, 0.7, 3.0),
+            (WaterOptics::RIVER, 2.0, 0.28, 1.2),
             (WaterOptics::LAKE, 3.0, 0.4, 0.6),
             (WaterOptics::OCEAN, 0.2, 0.02, 0.0),
             (WaterOptics::TROPICAL, 0.05, 0.005, 0.0),

@@ -34,6 +34,14 @@ pub(crate) struct SurfaceMaterial {
     pub flow: Option<Handle<Image>>,
 }
 
+impl SurfaceMaterial {
+    /// Whether one of `images` is among the textures.
+    pub fn uses(&self, images: &[AssetId<Image>]) -> bool {
+        let textures = [&self.mirror, &self.sky, &self.sky_light, &self.bed, &self.flow];
+        textures.into_iter().flatten().any(|texture| images.contains(&texture.id()))
+    }
+}
+
 fn shader() -> ShaderRef {
     ShaderRef::Path(AssetPath::from_path_buf(embedded_path!("surface.wgsl")).with_source("embedded"))
 }

@@ -1,4 +1,4 @@
-// What the surface reflects: the mirror camera's picture, and the sky where that is empty.
+// What the surface reflects: the mirror camera's picture, and the sky.
 #define_import_path freshet::surface::mirror
 
 #import freshet::surface::bindings::{surface, mirror, mirror_sampler, sky, sky_sampler, sky_light}
@@ -19,27 +19,26 @@ fn sky_irradiance() -> vec3<f32> {
     return textureSampleLevel(sky_light, sky_sampler, up, 0.0).rgb * surface.sky_tint;
 }
 
-// Mirror pictures of things have the fog from thing to mirrored eye in them; `fog` is that between eye and surface, of
-// which they are freed. Rays that a rough surface spreads by `spread` (rad) blur.
-fn reflected(foot: vec3<f32>, direction: vec3<f32>, spread: f32, fog: Fog) -> vec3<f32> {
-    let from_sky = sky_radiance(direction, clamp(spread * 2.0, 0.0, 1.0));
+// The mirror camera's picture where the ray from `foot` on the still surface goes, with its cover in alpha; empty
+// without a mirror.
+fn mirrored(foot: vec3<f32>, direction: vec3<f32>) -> vec4<f32> {
     if (surface.flags & types::FLAG_MIRROR) == 0u {
-        return from_sky;
+        return vec4(0.0);
     }
     // The mirror camera sees the unmirrored scene from below: a ray through `foot` is one of its own rays, so the
     // assumed distance matters only where the surface is not level.
     let seen = foot + direction * surface.mirror_distance;
     let clip = surface.mirror_clip_from_world * vec4(seen, 1.0);
     if clip.w <= 0.0 {
-        return from_sky;
+        return vec4(0.0);
     }
     let half_texel = 0.5 / vec2<f32>(textureDimensions(mirror));
     let uv = clamp(clip.xy / clip.w * vec2(0.5, -0.5) + 0.5, half_texel, 1.0 - half_texel);
-    let picture = textureSampleLevel(mirror, mirror_sampler, uv, 0.0);
-    return without_fog_covered(picture, fog) + from_sky * (1.0 - picture.a);
+    return textureSampleLevel(mirror, mirror_sampler, uv, 0.0);
 }
 
-// `without_fog` for a picture whose colour is weighted by its cover.
-fn without_fog_covered(picture: vec4<f32>, fog: Fog) -> vec3<f32> {
+// Mirrored things carry the fog between them and the mirrored eye: the colour, weighted by cover, without the part of
+// it that lies between eye and surface.
+fn freed_of_fog(picture: vec4<f32>, fog: Fog) -> vec3<f32> {
     return without_fog(picture.rgb, Fog(fog.clear, fog.glow * picture.a));
 }

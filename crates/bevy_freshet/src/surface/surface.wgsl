@@ -34,50 +34,58 @@ fn vertex(in: Vertex) -> Fragment {
     // The spacing of the mesh grows with the distance from its centre; this bound of it is continuous across rings.
     let distance = max(abs(in.position.x), abs(in.position.z));
     let spacing = surface.mesh_cell * max(1.0, distance / surface.mesh_reach * 2.0 - 1.0);
-    let moved = waves::displacement(rest, waves::shallow_fade(rest), spacing);
+    let fade = waves::shallow_fade(ground::still_depth(rest));
+    let moved = waves::displacement(rest, fade, spacing);
     let xz = surface.world_from_local * (rest + moved.xz) + surface.world_origin;
     let world = vec3(xz.x, surface.level + moved.y, xz.y);
     return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest);
 }
 
+// The surface as far as a pixel resolves it.
 struct Facet {
-    normal: vec3<f32>,
-    variance: f32,
+    slope: vec2<f32>,   // ∂height/∂xz, world
+    across: vec2<f32>,  // change of the slope to the next pixel of the row
+    down: vec2<f32>,    // change of the slope to the next pixel of the column
+    hidden: f32,        // slope variance that a pixel hides
 }
 
-// Normal of the surface as far as a pixel resolves it, and the slope variance it does not.
-fn facet(rest: vec2<f32>) -> Facet {
+fn facet(rest: vec2<f32>, depth: f32) -> Facet {
     let footprint = detail::Footprint(dpdx(rest), dpdy(rest));
     let spacing = max(length(footprint.x), length(footprint.y));
-    let swell = waves::slope(rest, waves::shallow_fade(rest), spacing);
+    let swell = waves::slope(rest, waves::shallow_fade(depth), spacing);
     let ripples = detail::slope(rest, footprint);
     let slope = surface.world_from_local * (swell.slope + ripples.slope);
-    return Facet(normalize(vec3(-slope.x, 1.0, -slope.y)), swell.variance + ripples.variance + surface.roughness);
+    return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance);
+}
+
+fn normal_of(slope: vec2<f32>) -> vec3<f32> {
+    return normalize(vec3(-slope.x, 1.0, -slope.y));
 }
 
 @fragment
 fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(0) vec4<f32> {
     let pixel = in.position.xy;
-    let facet = facet(in.rest);
+    let still_depth = ground::still_depth(in.rest);
+    let facet = facet(in.rest, still_depth);
+    let normal = normal_of(facet.slope);
     let to_eye = scene::direction_to_eye(in.world);
     let behind = scene::behind(pixel);
     // Where the bed has no data there is no water.
-    if ground::still_depth(in.rest) < NO_DATA_DEPTH {
+    if still_depth < NO_DATA_DEPTH {
         discard;
     }
     if !from_above {
-        return finish(seen_from_below(in, facet.normal, to_eye));
+        return finish(seen_from_below(in, normal, to_eye));
     }
 
     let fog = scene::fog_to(in.world, pixel);
     // A facet that leans away from the eye is hidden by the one before it: count it as seen edge-on.
-    let cos_eye = max(dot(facet.normal, to_eye), 0.02);
+    let cos_eye = max(dot(normal, to_eye), 0.02);
     let share = optics::reflectance(cos_eye) * surface.reflectivity;
 
-    let lit = light::lights(in.world, facet.normal, to_eye, facet.variance, pixel);
-    let foot = vec3(in.world.x, surface.level, in.world.z);
-    let reflection = mirror::reflected(foot, bounce(facet.normal, to_eye), sqrt(facet.variance), fog);
-    let below = refraction::refracted(in.world, in.position, facet.normal, to_eye, behind, lit);
+    let lit = light::lights(in.world, normal, to_eye, facet.hidden + surface.roughness, pixel);
+    let reflection = reflection(in.world, facet, to_eye, fog);
+    let below = refraction::refracted(in.world, in.position, normal, to_eye, behind, lit);
 
     var color = mix(below, reflection, share);
     if (surface.flags & types::FLAG_SUNLIGHT) != 0u {
@@ -94,12 +102,27 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
         case types::VIEW_REFLECTION: { color = reflection; }
         case types::VIEW_REFRACTION: { color = below; }
         case types::VIEW_FRESNEL: { color = vec3(share, 1.0 - share, 0.0); }
-        case types::VIEW_NORMAL: { color = facet.normal * 0.5 + 0.5; }
+        case types::VIEW_NORMAL: { color = normal * 0.5 + 0.5; }
         case types::VIEW_HEIGHT: { color = split(in.world.y - surface.level); }
         case types::VIEW_EDGE: { color = vec3(cover); }
         default: {}
     }
     return finish(color);
+}
+
+// Reflected light, averaged over four rays that lie in the pixel and in the slopes it hides.
+fn reflection(at: vec3<f32>, facet: Facet, to_eye: vec3<f32>, fog: scene::Fog) -> vec3<f32> {
+    let foot = vec3(at.x, surface.level, at.z);
+    // Both directions share the variance; two points at ± one deviation have it.
+    let hidden = sqrt(0.5 * facet.hidden);
+    var picture = vec4(0.0);
+    for (var i = 0; i < 4; i++) {
+        let corner = vec2(f32(i & 1), f32(i >> 1)) * 2.0 - 1.0;
+        let within = 0.25 * (facet.across * corner.x + facet.down * corner.y);
+        picture += 0.25 * mirror::mirrored(foot, bounce(normal_of(facet.slope + within + hidden * corner), to_eye));
+    }
+    let sky = mirror::sky_radiance(bounce(normal_of(facet.slope), to_eye), clamp(2.0 * hidden, 0.0, 1.0));
+    return mirror::freed_of_fog(picture, fog) + sky * (1.0 - picture.a);
 }
 
 // Direction of the mirrored ray; the water does not mirror itself, so rays that would dip below it graze it.

@@ -4,14 +4,13 @@
 #define_import_path freshet::surface::waves
 
 #import freshet::surface::bindings::surface
-#import freshet::surface::ground
 
-// Share of the waves' height that is left in shallow water.
-fn shallow_fade(rest: vec2<f32>) -> f32 {
+// Share of the waves' height that is left where the still water is `depth` metres deep.
+fn shallow_fade(depth: f32) -> f32 {
     if surface.fade_depth <= 0.0 {
         return 1.0;
     }
-    let t = clamp(ground::still_depth(rest) / surface.fade_depth, 0.0, 1.0);
+    let t = clamp(depth / surface.fade_depth, 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
 }
 

@@ -41,10 +41,15 @@ pub(super) fn write_surfaces(
     mut materials: ResMut<Assets<SurfaceMaterial>>,
     mut reported: ResMut<Reported>,
     mut plain_sky: Local<Option<Handle<Image>>>,
+    mut image_events: MessageReader<AssetEvent<Image>>,
     viewers: Viewers,
     waters: Waters,
     surfaces: Query<(&SurfaceOf, &SurfaceShape, &MeshMaterial3d<SurfaceMaterial>)>,
 ) {
+    let replaced: Vec<AssetId<Image>> = image_events
+        .read()
+        .filter_map(|event| if let AssetEvent::Modified { id } = event { Some(*id) } else { None })
+        .collect();
     let plain_sky = plain_sky.get_or_insert_with(|| images.add(white_cube())).clone();
     for (surface, shape, material_handle) in &surfaces {
         let (Ok(water), Some(viewer)) = (waters.get(surface.water), viewers.get(surface.viewer)) else { continue };
@@ -70,8 +75,8 @@ pub(super) fn write_surfaces(
         if let Some(mut buffer) = buffers.get_mut(&wanted.surface) {
             buffer.set_data(gpu);
         }
-        // A touched material makes a new bind group.
-        if *material != wanted
+        // A touched material makes a new bind group: needed for new handles and for textures that were replaced.
+        if (*material != wanted || wanted.uses(&replaced))
             && let Some(mut material) = materials.get_mut(material_handle)
         {
             *material = wanted;
