@@ -134,7 +134,7 @@ fn river(mut commands: Commands, scene: Res<Scene>) {
         Water::new(scene.bed.elevations().extent()),
         WaterOptics::RIVER,
         // A calm afternoon.
-        WaterWaves::wind(1.5, 300.0, vec2(0.8, -0.5)),
+        WaterWaves::wind(2.2, 300.0, vec2(0.8, -0.5)).scaled(0.45),
         WaterSurface { ripples: 0.025, ..default() },
         scene.flow.clone(),
         Transform::from_xyz(0.0, LEVEL, 0.0),
@@ -159,7 +159,7 @@ fn light(mut commands: Commands, scene: Res<Scene>, canvas: Res<Canvas>) {
     commands.spawn((
         Camera3d::default(),
         (Hdr, Tonemapping::TonyMcMapface),
-        SkyView { visibility: Some(2500.0), exposure: Some(0.3), ..default() },
+        SkyView { visibility: Some(2500.0), exposure: Some(0.3) },
         canvas.target(),
         FreeCamera::default(),
         Transform::from_translation(scene.view.eye + Vec3::Y * LEVEL)
