@@ -6,14 +6,14 @@ use freshet_hydro::optics::{PURE_WATER_ABSORPTION, WATER_INDEX};
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Default, Clone, Debug, PartialEq)]
 pub enum Fresnel {
-    /// `1 − c cos θ` with the correction `c` (0…2): the cheapest. [AT15] uses 1.8.
+    /// `1 − c cos θ` with the correction `c` (0…2): the cheapest. Anastasov and Tomova (2015) use 1.8.
     Simple {
         /// Share of refraction at normal incidence.
         correction: f32,
     },
     /// `R₀ + (1 − R₀)(1 − cos θ)⁵` (Schlick 1994).
     Schlick,
-    /// `(1 + cos θ)⁻⁵`, mode 2 of the lake in [M06].
+    /// `(1 + cos θ)⁻⁵`, a mode of the lake of Mátyás (2006).
     Reciprocal,
     /// The mean of both polarisations (Fresnel 1823).
     #[default]
@@ -45,7 +45,7 @@ pub struct WaterOptics {
     /// How much of the sunlight's own way down to the bed is counted, 0…1. Default 1, as in nature; 0 leaves the bed lit
     /// as in air.
     pub light_path: f32,
-    /// Colour of the dull film that [M06] blends over its lake (linear RGB). Default (0.1, 0.1, 0.2).
+    /// Colour of the dull film that Mátyás (2006) blends over his lake (linear RGB). Default (0.1, 0.1, 0.2).
     pub dull_color: LinearRgba,
     /// Share of the dull film, 0…1. Default 0: none.
     pub dullness: f32,

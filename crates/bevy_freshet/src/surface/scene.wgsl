@@ -35,10 +35,12 @@ fn behind(pixel: vec2<f32>) -> Behind {
 #endif
 }
 
-// The pixel of the target at which a world position is seen, kept inside the viewport.
+// The pixel of the target at which a world position is seen. Beyond the edges of the viewport the picture is mirrored:
+// that shows no seam, where its last row repeated would show streaks.
 fn pixel_of(position: vec3<f32>) -> vec2<f32> {
     let clip = position_world_to_clip(position);
-    let uv = clip.xy / max(clip.w, 1e-6) * vec2(0.5, -0.5) + 0.5;
+    let place = clip.xy / max(clip.w, 1e-6) * vec2(0.5, -0.5) + 0.5;
+    let uv = 1.0 - abs(1.0 - abs(place));
     let inside = clamp(uv * view.viewport.zw, vec2(0.5), view.viewport.zw - 0.5);
     return view.viewport.xy + inside;
 }
