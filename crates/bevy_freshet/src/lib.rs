@@ -9,6 +9,8 @@ pub mod bed;
 pub mod body;
 #[cfg(feature = "rapier")]
 pub mod buoyancy;
+#[cfg(test)]
+mod layout;
 pub mod query;
 pub mod reflection;
 mod report;
