@@ -7,6 +7,7 @@ mod stage;
 mod buoyancy;
 mod optics;
 mod reflection;
+mod river;
 mod robustness;
 mod shore;
 mod waves;

@@ -65,7 +65,9 @@ impl ResolvedWater {
 
     /// Current at local `place`, local xz, m/s.
     pub fn current(&self, place: Vec2) -> Vec2 {
-        self.drift + self.flow.as_ref().map_or(Vec2::ZERO, |(map, scale)| map.sample(place) * *scale)
+        let Some((map, scale)) = &self.flow else { return self.drift };
+        let share = waves::shallow_fade(self.still_depth(place), WaterFlow::BANK_DEPTH);
+        self.drift + map.sample(place) * (*scale * share)
     }
 }
 

@@ -29,6 +29,7 @@ pub(crate) struct GpuSurface {
     pub flow_size: Vec2,
     pub flow_cycle: f32,
     pub flow_phase: f32,
+    pub bank_depth: f32,
 
     pub detail_slope: f32,
     pub detail_scale: f32,
