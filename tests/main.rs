@@ -5,6 +5,7 @@ mod stage;
 
 #[cfg(feature = "rapier")]
 mod buoyancy;
+mod glitter;
 mod optics;
 mod reflection;
 mod river;
