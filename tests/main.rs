@@ -1,6 +1,7 @@
 //! Integration tests of the plugin: one binary, so that Bevy is linked once. A module per theme.
 #![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
+mod said;
 mod stage;
 
 #[cfg(feature = "rapier")]
@@ -11,4 +12,5 @@ mod reflection;
 mod river;
 mod robustness;
 mod shore;
+mod warnings;
 mod waves;
