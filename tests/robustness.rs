@@ -32,6 +32,28 @@ fn the_same_scene_gives_the_same_picture_bit_for_bit() {
 }
 
 #[test]
+fn water_stands_still_while_virtual_time_is_paused() {
+    let (mut stage, camera) = river_stage();
+    stage.settle();
+    stage.run(0.5);
+    let mut pictures_before_and_after_half_a_second = |paused: bool| {
+        let mut time = stage.app.world_mut().resource_mut::<Time<Virtual>>();
+        if paused {
+            time.pause()
+        } else {
+            time.unpause()
+        }
+        let before = stage.picture(camera);
+        stage.run(0.5);
+        (before.bits(), stage.picture(camera).bits())
+    };
+    let (before, after) = pictures_before_and_after_half_a_second(true);
+    assert!(before == after, "paused water moves");
+    let (before, after) = pictures_before_and_after_half_a_second(false);
+    assert!(before != after, "water moves again");
+}
+
+#[test]
 fn the_picture_has_no_pixel_that_is_not_a_number() {
     let (mut stage, camera) = river_stage();
     stage.settle();
