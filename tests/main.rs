@@ -6,6 +6,8 @@ mod stage;
 
 #[cfg(feature = "rapier")]
 mod buoyancy;
+#[cfg(feature = "rapier")]
+mod endurance;
 mod glitter;
 mod optics;
 mod reflection;
