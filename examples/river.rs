@@ -1,6 +1,6 @@
 //! A real river: checkered balls, crates, logs and a boat float down a meandering channel.
 //!
-//! `--camera` chooses from `bank`, `bend`, `drift`, `shallows`, `boat`, `above`.
+//! `--camera` chooses from `bank`, `bend`, `drift`, `shallows`, `boat`, `above`, `sunset`.
 #[path = "common/banks.rs"]
 mod banks;
 #[path = "common/bodies.rs"]
@@ -34,21 +34,33 @@ const END: Vec2 = Vec2::new(-2.0, 446.0);
 /// Number of bodies without the boat.
 const BODIES: usize = 24;
 
-/// Cameras by name: eye and target in x, height over the water, z.
-const CAMERAS: [(&str, Vec3, Vec3); 6] = [
-    ("bank", Vec3::new(-62.0, 2.2, 262.0), Vec3::new(-20.0, 0.3, 250.0)),
-    ("bend", Vec3::new(-75.0, 7.5, 232.0), Vec3::new(-30.0, -1.0, 262.0)),
-    ("drift", Vec3::new(-40.0, 0.9, 262.0), Vec3::new(-18.0, 0.2, 252.0)),
-    ("shallows", Vec3::new(-48.0, 2.4, 266.0), Vec3::new(-42.0, -0.6, 259.0)),
-    ("boat", Vec3::new(-30.0, 2.6, 258.0), Vec3::new(-22.0, 0.2, 252.0)),
-    ("above", Vec3::new(-30.0, 90.0, 330.0), Vec3::new(-10.0, 0.0, 240.0)),
+/// A camera and the sun it is seen under.
+struct View {
+    name: &'static str,
+    /// x, height over the water, z; m.
+    eye: Vec3,
+    target: Vec3,
+    /// Elevation and azimuth, degrees.
+    sun: (f32, f32),
+}
+
+const AFTERNOON: (f32, f32) = (32.0, 215.0);
+
+const VIEWS: [View; 7] = [
+    View { name: "bank", eye: vec3(-62.0, 2.2, 262.0), target: vec3(-20.0, 0.3, 250.0), sun: AFTERNOON },
+    View { name: "bend", eye: vec3(-75.0, 7.5, 232.0), target: vec3(-30.0, -1.0, 262.0), sun: AFTERNOON },
+    View { name: "drift", eye: vec3(-40.0, 0.9, 262.0), target: vec3(-18.0, 0.2, 252.0), sun: AFTERNOON },
+    View { name: "shallows", eye: vec3(-66.0, 2.6, 240.0), target: vec3(-72.0, -0.8, 246.0), sun: AFTERNOON },
+    View { name: "boat", eye: vec3(-32.0, 2.4, 254.0), target: vec3(-23.0, 0.2, 252.0), sun: AFTERNOON },
+    View { name: "above", eye: vec3(-30.0, 70.0, 320.0), target: vec3(-20.0, 0.0, 245.0), sun: AFTERNOON },
+    View { name: "sunset", eye: vec3(-8.0, 2.0, 244.0), target: vec3(-50.0, 1.5, 261.0), sun: (7.0, 246.0) },
 ];
 
 fn main() -> Result<AppExit, Box<dyn std::error::Error>> {
     let options = Options::parse();
-    let name = options.camera.clone().unwrap_or_else(|| CAMERAS[0].0.into());
-    let Some(camera) = CAMERAS.iter().find(|camera| camera.0 == name) else {
-        let names: Vec<_> = CAMERAS.iter().map(|camera| camera.0).collect();
+    let name = options.camera.clone().unwrap_or_else(|| VIEWS[0].name.into());
+    let Some(view) = VIEWS.iter().find(|view| view.name == name) else {
+        let names: Vec<_> = VIEWS.iter().map(|view| view.name).collect();
         return Err(format!("there is no camera {name:?}; there are {}", names.join(", ")).into());
     };
     // Terrain and current are read before anything is drawn, so that a missing file is an error and not a dry river.
@@ -64,49 +76,10 @@ fn main() -> Result<AppExit, Box<dyn std::error::Error>> {
         FreeCameraPlugin,
     ))
     .insert_resource(TimestepMode::Fixed { dt: common::FRAME as f32, substeps: 1 })
-    .insert_resource(Scene { bed, flow, eye: camera.1 + Vec3::Y * LEVEL, target: camera.2 + Vec3::Y * LEVEL })
+    .insert_resource(Scene { bed, flow, view })
     .add_systems(Startup, (land, river, light, float).chain());
     if options.out.is_some() {
         app.add_systems(Last, print_table);
-    }
-    if let Ok(off) = std::env::var("OFF") {
-        app.add_systems(
-            Update,
-            move |mut c: Commands,
-                  w: Query<Entity, With<Water>>,
-                  b: Query<Entity, With<BedShading>>,
-                  mut r: Query<&mut WaterReflection>,
-                  mut l: Query<&mut DirectionalLight>,
-                  n: Query<(Entity, &Name)>| {
-                if off.contains("banks") {
-                    for (e, n) in &n {
-                        if n.as_str() == "Banks" {
-                            c.entity(e).despawn();
-                        }
-                    }
-                }
-                if off.contains("water") {
-                    for e in &w {
-                        c.entity(e).despawn();
-                    }
-                }
-                if off.contains("mirror") {
-                    for mut x in &mut r {
-                        x.planar = false;
-                    }
-                }
-                if off.contains("shadow") {
-                    for mut x in &mut l {
-                        x.shadow_maps_enabled = false;
-                    }
-                }
-                if off.contains("bed") {
-                    for e in &b {
-                        c.entity(e).despawn();
-                    }
-                }
-            },
-        );
     }
     Ok(common::run(app))
 }
@@ -115,8 +88,7 @@ fn main() -> Result<AppExit, Box<dyn std::error::Error>> {
 struct Scene {
     bed: WaterBed,
     flow: WaterFlow,
-    eye: Vec3,
-    target: Vec3,
+    view: &'static View,
 }
 
 /// The ground, drawn and solid, with its plants and stones.
@@ -161,7 +133,9 @@ fn river(mut commands: Commands, scene: Res<Scene>) {
     commands.spawn((
         Water::new(scene.bed.elevations().extent()),
         WaterOptics::RIVER,
-        WaterWaves::wind(2.5, 400.0, vec2(0.8, -0.5)),
+        // A calm afternoon.
+        WaterWaves::wind(2.2, 300.0, vec2(0.8, -0.5)).scaled(0.45),
+        WaterSurface { ripples: 0.025, ..default() },
         scene.flow.clone(),
         Transform::from_xyz(0.0, LEVEL, 0.0),
     ));
@@ -177,18 +151,19 @@ fn river(mut commands: Commands, scene: Res<Scene>) {
 fn light(mut commands: Commands, scene: Res<Scene>, canvas: Res<Canvas>) {
     let cascades = CascadeShadowConfigBuilder {
         num_cascades: 2,
-        maximum_distance: 90.0,
+        maximum_distance: 90.0 + 2.0 * scene.view.eye.y,
         first_cascade_far_bound: 22.0,
         ..default()
     };
-    commands.spawn((Sky::with_sun(32.0, 215.0), cascades.build()));
+    commands.spawn((Sky::with_sun(scene.view.sun.0, scene.view.sun.1), cascades.build()));
     commands.spawn((
         Camera3d::default(),
         (Hdr, Tonemapping::TonyMcMapface),
-        SkyView { visibility: Some(2500.0), exposure: Some(0.3), ..default() },
+        SkyView { visibility: Some(2500.0), exposure: Some(0.3) },
         canvas.target(),
         FreeCamera::default(),
-        Transform::from_translation(scene.eye).looking_at(scene.target, Vec3::Y),
+        Transform::from_translation(scene.view.eye + Vec3::Y * LEVEL)
+            .looking_at(scene.view.target + Vec3::Y * LEVEL, Vec3::Y),
     ));
 }
 

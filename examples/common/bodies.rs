@@ -192,7 +192,7 @@ fn checkerboard() -> Image {
     const SIZE: u32 = 64;
     // Multiplied with the material's colour: coloured and nearly black squares.
     let texel = |i: u32| {
-        let light = (i % SIZE / (SIZE / 8) + i / SIZE / (SIZE / 4)) % 2 == 0;
+        let light = (i % SIZE / (SIZE / 8) + i / SIZE / (SIZE / 4)).is_multiple_of(2);
         if light { [255; 4] } else { [28, 28, 28, 255] }
     };
     let data = (0..SIZE * SIZE).flat_map(texel).collect();

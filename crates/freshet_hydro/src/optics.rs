@@ -25,9 +25,9 @@ pub fn fresnel_exact(cos_incidence: f32, index: f32) -> f32 {
         return 1.0;
     }
     let cos_t = cos_t_squared.sqrt();
-    let senkrecht = (cos_i - index * cos_t) / (cos_i + index * cos_t);
+    let perpendicular = (cos_i - index * cos_t) / (cos_i + index * cos_t);
     let parallel = (index * cos_i - cos_t) / (index * cos_i + cos_t);
-    0.5 * (senkrecht * senkrecht + parallel * parallel)
+    0.5 * (perpendicular * perpendicular + parallel * parallel)
 }
 
 /// Reflectance at normal incidence, `((n − 1)/(n + 1))²`.

@@ -66,12 +66,14 @@ fn ground(position: vec3<f32>, up: f32, place: Place) -> Ground {
     let height = position.y - bed.level + (patchy - 0.5) * 0.3;
     let steep = 1.0 - smoothstep(0.80, 0.93, up);
     var weights = vec3(
-        1.0 - smoothstep(-0.25, 0.10, height),
+        1.0 - smoothstep(-1.5, -0.4, height),
         0.55,
         smoothstep(0.15, 0.40, height) * (1.0 - steep) * 2.0,
     );
-    // Banks of sand under water make the bed readable.
-    weights.y += smoothstep(0.5, 0.7, noise(position.xz * 0.07 + 9.0)) * 0.9;
+    // Patches of mud on the shore and of sand in the deep: the bed is readable, and no band is even.
+    let patches = smoothstep(0.3, 0.85, noise(position.xz * 0.07 + 9.0) * 0.7 + patchy * 0.3);
+    weights.x += patches * (1.0 - smoothstep(0.0, 0.15, height));
+    weights.y += (1.0 - patches) * 0.6 * (1.0 - smoothstep(-0.2, 0.0, height));
 
     // Only what weighs something is sampled.
     var layers = array<vec4<f32>, 3>(vec4(0.0), vec4(0.0), vec4(0.0));

@@ -77,8 +77,8 @@ impl WaterOptics {
 
     /// Pure water (Pope and Fry 1997), without scattering.
     pub const PURE: Self = Self::BASE;
-    /// A clear lowland river: 2 mg/m³ chlorophyll, dissolved organics 0.28 1/m, 1.2 g/m³ sediment.
-    pub const RIVER: Self = Self::made_of(Vec3::new(0.37435, 0.14227, 0.35741), Vec3::new(0.01645, 0.01695, 0.01825));
+    /// A clear lowland river: 1.5 mg/m³ chlorophyll, dissolved organics 0.5 1/m, 1.5 g/m³ sediment.
+    pub const RIVER: Self = Self::made_of(Vec3::new(0.38427, 0.1906, 0.54978), Vec3::new(0.01863, 0.01916, 0.02049));
     /// A clear lake: 3 mg/m³ chlorophyll, dissolved organics 0.4 1/m, 0.6 g/m³ sediment.
     pub const LAKE: Self = Self::made_of(Vec3::new(0.3835, 0.1652, 0.4571), Vec3::new(0.01182, 0.01232, 0.01362));
     /// The open ocean: 0.2 mg/m³ chlorophyll, dissolved organics 0.02 1/m.
@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn presets_are_what_their_constituents_make() {
         for (preset, chlorophyll, dissolved_organics, sediment) in [
-            (WaterOptics::RIVER, 2.0, 0.28, 1.2),
+            (WaterOptics::RIVER, 1.5, 0.5, 1.5),
             (WaterOptics::LAKE, 3.0, 0.4, 0.6),
             (WaterOptics::OCEAN, 0.2, 0.02, 0.0),
             (WaterOptics::TROPICAL, 0.05, 0.005, 0.0),

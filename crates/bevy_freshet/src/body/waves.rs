@@ -80,6 +80,14 @@ impl WaterWaves {
         });
         Self { trains: trains.collect(), ..Self::still() }
     }
+
+    /// The same trains with `factor` (≥ 0) times their height: 0.5 is the sea after the wind has dropped.
+    pub fn scaled(mut self, factor: f32) -> Self {
+        for train in &mut self.trains {
+            train.steepness *= factor;
+        }
+        self
+    }
 }
 
 impl Default for WaterWaves {

@@ -33,7 +33,7 @@ pub use maps::SkyMaps;
 pub use settings::Sky;
 pub use view::SkyView;
 
-use crate::report::Reported;
+use crate::{report::Reported, schedule::WaterSystems};
 use bevy::{app::prelude::*, asset::Assets, ecs::prelude::*, image::Image, transform::TransformSystems};
 
 /// Draws the [`Sky`] for every camera with a [`SkyView`].
@@ -45,7 +45,8 @@ pub enum SkySystems {
     /// A changed [`Sky`] turns its light and repaints its [`SkyMaps`]; the cameras get both. Before
     /// [`TransformSystems::Propagate`].
     Paint,
-    /// The fog of the cameras takes the colour of the horizon. After [`TransformSystems::Propagate`].
+    /// The fog of the cameras takes the colour of the horizon. After [`TransformSystems::Propagate`], before
+    /// [`WaterSystems::Present`].
     Fog,
 }
 
@@ -57,7 +58,7 @@ impl Plugin for SkyPlugin {
                 PostUpdate,
                 (
                     SkySystems::Paint.before(TransformSystems::Propagate),
-                    SkySystems::Fog.after(TransformSystems::Propagate),
+                    SkySystems::Fog.after(TransformSystems::Propagate).before(WaterSystems::Present),
                 ),
             )
             .add_systems(PostUpdate, paint.run_if(resource_exists::<Assets<Image>>))

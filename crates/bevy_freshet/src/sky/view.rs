@@ -87,7 +87,7 @@ pub(super) fn tint_fog(
                 fog.falloff = wanted.falloff;
             }
             None => {
-                commands.entity(entity).insert(wanted);
+                commands.entity(entity).try_insert(wanted);
             }
         }
     }

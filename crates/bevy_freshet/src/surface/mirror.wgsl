@@ -5,7 +5,7 @@
 #import freshet::surface::types
 #import freshet::surface::scene::{Fog, without_fog}
 
-// Radiance of the sky in a world direction, `roughness` 0…1.
+// Radiance of the sky in a world direction, perceptual `roughness` 0…1.
 fn sky_radiance(direction: vec3<f32>, roughness: f32) -> vec3<f32> {
     // Cubemaps are left-handed.
     let texel_direction = surface.sky_from_world * direction * vec3(1.0, 1.0, -1.0);

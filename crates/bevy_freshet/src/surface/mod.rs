@@ -33,7 +33,7 @@ pub struct WaterSurface {
     /// Cells across the finest part of the mesh, 8…256, rounded to a multiple of 4. Default 64. Each ring around it is
     /// twice as wide with cells twice as large.
     pub cells: u32,
-    /// Root mean square slope of the fine ripples, 0…1. Default 0.06. 0 switches them off.
+    /// Root mean square slope of the fine ripples, 0…1. Default 0.045. 0 switches them off.
     pub ripples: f32,
     /// Size of the ripples' pattern, m, > 0. Default 4: ripples of 6 cm to 1 m.
     pub ripple_size: f32,
@@ -51,7 +51,7 @@ impl Default for WaterSurface {
         Self {
             cell: 0.15,
             cells: 64,
-            ripples: 0.06,
+            ripples: 0.045,
             ripple_size: 4.0,
             roughness: 0.002,
             sunlight: true,

@@ -121,7 +121,9 @@ fn reflection(at: vec3<f32>, facet: Facet, to_eye: vec3<f32>, fog: scene::Fog) -
         let within = 0.25 * (facet.across * corner.x + facet.down * corner.y);
         picture += 0.25 * mirror::mirrored(foot, bounce(normal_of(facet.slope + within + hidden * corner), to_eye));
     }
-    let sky = mirror::sky_radiance(bounce(normal_of(facet.slope), to_eye), clamp(2.0 * hidden, 0.0, 1.0));
+    // Slopes turn the mirrored ray by twice their angle; a lobe of that width has the roughness of its square root.
+    let width = 2.0 * hidden + length(facet.across) + length(facet.down);
+    let sky = mirror::sky_radiance(bounce(normal_of(facet.slope), to_eye), sqrt(clamp(width, 0.0, 1.0)));
     return mirror::freed_of_fog(picture, fog) + sky * (1.0 - picture.a);
 }
 

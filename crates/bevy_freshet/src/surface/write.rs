@@ -142,7 +142,7 @@ fn write_detail(
     time: f64,
     reported: &mut Reported,
 ) {
-    gpu.detail_slope = reported.clamp(entity, "WaterSurface::ripples", settings.ripples, 0.0..=1.0, 0.06);
+    gpu.detail_slope = reported.clamp(entity, "WaterSurface::ripples", settings.ripples, 0.0..=1.0, 0.045);
     let size = reported.clamp(entity, "WaterSurface::ripple_size", settings.ripple_size, 1e-3..=1e4, 4.0);
     gpu.roughness = reported.clamp(entity, "WaterSurface::roughness", settings.roughness, 1e-4..=0.5, 0.002);
     gpu.detail_scale = size.recip();
