@@ -13,7 +13,7 @@ const RATE: f32 = 60.0;
 const LEVEL: f32 = 3.0;
 
 /// An app that only floats bodies, 60 fixed steps of physics a second, one an update.
-fn app() -> App {
+pub fn app() -> App {
     let step = Duration::from_secs_f32(1.0 / RATE);
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default()))
@@ -340,6 +340,7 @@ fn mass_may_be_given_or_left_to_rapier() {
 #[test]
 fn bad_input_is_survived() {
     let (mut app, _) = still_water();
+    crate::said::run_on_this_thread(&mut app);
     let mut bodies = Vec::new();
     for density in [0.0, -1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MIN_POSITIVE] {
         let ball = || Collider::ball(0.3);

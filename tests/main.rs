@@ -1,12 +1,18 @@
 //! Integration tests of the plugin: one binary, so that Bevy is linked once. A module per theme.
 #![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
+mod said;
 mod stage;
 
 #[cfg(feature = "rapier")]
 mod buoyancy;
+#[cfg(feature = "rapier")]
+mod endurance;
+mod glitter;
 mod optics;
 mod reflection;
+mod river;
 mod robustness;
 mod shore;
+mod warnings;
 mod waves;

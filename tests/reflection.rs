@@ -206,3 +206,29 @@ fn the_sky_is_mirrored_where_nothing_is_drawn() {
     let seen = stage.picture(camera).at(SIZE.x / 2, SIZE.y / 2);
     assert!(seen.distance(vec3(0.2, 0.4, 0.6)) < 2e-3, "{seen}");
 }
+
+#[test]
+fn a_mirror_refreshed_every_fourth_frame_shows_the_same_still_scene() {
+    let scene_with = |refresh: u32| {
+        let mut stage = Stage::new();
+        let water = scene(&mut stage);
+        stage.app.world_mut().get_mut::<WaterReflection>(water).unwrap().refresh = refresh;
+        let camera = stage.camera(perspective(), level_pose());
+        hide_boxes_from(&mut stage, camera);
+        let picture = stage.picture(camera);
+        let mut drawn = 0;
+        for _ in 0..40 {
+            stage.app.update();
+            let world = stage.app.world_mut();
+            let mut mirrors = world.query_filtered::<&Camera, With<bevy_freshet::reflection::MirrorCamera>>();
+            drawn += u32::from(mirrors.single(world).unwrap().is_active);
+        }
+        (picture, drawn)
+    };
+    let ((always, in_all), (seldom, in_some)) = (scene_with(1), scene_with(4));
+    assert_eq!((in_all, in_some), (40, 10), "frames of 40 in which the mirror is drawn");
+    assert!(bounds(&always, 0).is_some(), "the red box is mirrored");
+    for ((pixel, always), (_, seldom)) in always.pixels().zip(seldom.pixels()) {
+        assert!(always.distance(seldom) < 1e-3, "{pixel}: {always} and {seldom}");
+    }
+}

@@ -1,5 +1,8 @@
 //! Repeatability, and what happens with unusable settings.
-use crate::stage::{SIZE, Stage, still_water};
+use crate::{
+    said::{complaints, run_on_this_thread},
+    stage::{SIZE, Stage, still_water},
+};
 use bevy::prelude::*;
 use bevy_freshet::prelude::*;
 
@@ -26,6 +29,28 @@ fn the_same_scene_gives_the_same_picture_bit_for_bit() {
     let (first, second) = (picture(), picture());
     assert!(first.pixels().any(|(_, color)| color.max_element() > 0.01), "there is something to see");
     assert!(first.bits() == second.bits());
+}
+
+#[test]
+fn water_stands_still_while_virtual_time_is_paused() {
+    let (mut stage, camera) = river_stage();
+    stage.settle();
+    stage.run(0.5);
+    let mut pictures_before_and_after_half_a_second = |paused: bool| {
+        let mut time = stage.app.world_mut().resource_mut::<Time<Virtual>>();
+        if paused {
+            time.pause()
+        } else {
+            time.unpause()
+        }
+        let before = stage.picture(camera);
+        stage.run(0.5);
+        (before.bits(), stage.picture(camera).bits())
+    };
+    let (before, after) = pictures_before_and_after_half_a_second(true);
+    assert!(before == after, "paused water moves");
+    let (before, after) = pictures_before_and_after_half_a_second(false);
+    assert!(before != after, "water moves again");
 }
 
 #[test]
@@ -56,6 +81,7 @@ fn no_two_systems_race() {
 #[test]
 fn unusable_settings_neither_panic_nor_draw_anything_wrong() {
     let (mut stage, camera) = river_stage();
+    run_on_this_thread(&mut stage.app);
     let before = stage.picture(camera);
     // Waters that cannot be drawn must leave the one that can alone.
     let nan = f32::NAN;
@@ -67,14 +93,25 @@ fn unusable_settings_neither_panic_nor_draw_anything_wrong() {
     assert!(before.bits() == after.bits());
 }
 
+/// What is unusable in the next test's water.
+const UNUSABLE: &str = "
+    WaterWaves::trains WaterWaves::depth WaterWaves::fade_depth WaterFlow::uniform WaterFlow::scale
+    WaterSurface::cell WaterSurface::cells WaterSurface::ripples WaterSurface::ripple_size WaterSurface::roughness
+    WaterReflection::resolution WaterReflection::refresh WaterReflection::clip_offset WaterReflection::distance
+    WaterReflection::distortion
+    WaterOptics::absorption WaterOptics::backscatter WaterOptics::index Fresnel::Simple::correction
+    WaterOptics::reflectivity WaterOptics::refraction WaterOptics::dispersion WaterOptics::light_path
+    WaterOptics::dull_color WaterOptics::dullness WaterOptics::edge_depth";
+
 #[test]
-fn parameters_that_are_not_numbers_fall_back_to_sane_ones() {
+fn parameters_that_are_not_numbers_are_named_once_and_fall_back_to_sane_ones() {
     let mut stage = Stage::new();
+    run_on_this_thread(&mut stage.app);
     stage.app.insert_resource(ClearColor(Color::linear_rgb(0.3, 0.5, 0.7)));
     let (nan, inf) = (f32::NAN, f32::INFINITY);
     let (water, ..) = still_water(Vec2::splat(40.0));
     let train = bevy_freshet::body::Wave { direction: Vec2::splat(nan), wavelength: 0.0, steepness: inf, phase: nan };
-    stage.spawn((
+    let water = (
         water,
         WaterWaves { trains: vec![train; 12], depth: nan, fade_depth: nan },
         WaterSurface { cell: nan, cells: 0, ripples: inf, ripple_size: -1.0, roughness: nan, ..default() },
@@ -94,9 +131,16 @@ fn parameters_that_are_not_numbers_fall_back_to_sane_ones() {
             edge_depth: nan,
             fog: true,
         },
-    ));
+    );
+    let water = stage.spawn(water);
     let pose = Transform::from_xyz(0.0, 3.0, 8.0).looking_at(Vec3::ZERO, Vec3::Y);
     let camera = stage.camera(PerspectiveProjection::default(), pose);
+    let said = complaints(&mut stage.app, |app| (0..10).for_each(|_| app.update()));
+    for field in UNUSABLE.split_whitespace() {
+        let field = format!(" {water}: {field} ");
+        assert_eq!(said.iter().filter(|line| line.contains(&field)).count(), 1, "{field}in {said:#?}");
+    }
+    assert_eq!(said.len(), UNUSABLE.split_whitespace().count(), "{said:#?}");
     let picture = stage.picture(camera);
     for (pixel, color) in picture.pixels() {
         assert!(color.is_finite() && color.min_element() >= 0.0, "{pixel}: {color}");

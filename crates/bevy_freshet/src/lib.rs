@@ -9,6 +9,8 @@ pub mod bed;
 pub mod body;
 #[cfg(feature = "rapier")]
 pub mod buoyancy;
+#[cfg(test)]
+mod layout;
 pub mod query;
 pub mod reflection;
 mod report;
@@ -32,7 +34,10 @@ pub mod prelude {
     };
 }
 
-use bevy::{prelude::*, render::RenderApp};
+use bevy::{
+    prelude::*,
+    render::{RenderApp, RenderPlugin},
+};
 
 /// Water: drawn, reflecting, and answering [`WaterQuery`](query::WaterQuery); with the feature `rapier` it carries
 /// bodies.
@@ -48,6 +53,17 @@ impl Plugin for WaterPlugin {
         app.add_plugins(buoyancy::BuoyancyPlugin);
         if app.get_sub_app(RenderApp).is_some() {
             app.add_plugins((surface::SurfacePlugin, reflection::ReflectionPlugin, bed::BedPlugin));
+        }
+    }
+
+    fn finish(&self, app: &mut App) {
+        if app.is_plugin_added::<surface::SurfacePlugin>() {
+            return;
+        }
+        if app.get_sub_app(RenderApp).is_some() {
+            warn!("WaterPlugin was added before DefaultPlugins: water is felt but not drawn");
+        } else if app.is_plugin_added::<RenderPlugin>() {
+            warn!("there is no GPU device: water is felt but not drawn");
         }
     }
 }

@@ -26,6 +26,7 @@ pub(super) struct BedExtension {
 
 /// The Rust twin of `Bed` in `bed.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default)]
+#[cfg_attr(test, derive(Reflect))]
 pub(super) struct GpuBed {
     /// World height of the water, m.
     pub level: f32,
@@ -38,5 +39,15 @@ pub(super) struct GpuBed {
 impl MaterialExtension for BedExtension {
     fn fragment_shader() -> ShaderRef {
         ShaderRef::Path(AssetPath::from_path_buf(embedded_path!("bed.wgsl")).with_source("embedded"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shader_reads_what_is_written() {
+        crate::layout::assert_same_layout::<GpuBed, _>(include_str!("bed.wgsl"), "Bed");
     }
 }

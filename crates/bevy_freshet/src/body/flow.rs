@@ -9,6 +9,8 @@ use std::{path::Path, sync::Arc};
 ///
 /// Velocities are horizontal, in the water's local frame: x along local x (east for an unturned water), y along local z
 /// (south).
+///
+/// A map's velocities fade to zero at the waterline, over [`WaterFlow::BANK_DEPTH`]: its cells are wider than that.
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(Component, Default, Clone, Debug)]
 pub struct WaterFlow {
@@ -22,6 +24,9 @@ pub struct WaterFlow {
 }
 
 impl WaterFlow {
+    /// Depth of water (m) from which on a map's velocity counts in full.
+    pub const BANK_DEPTH: f32 = 0.1;
+
     /// The same velocity (m/s) everywhere.
     pub fn uniform(velocity: Vec2) -> Self {
         Self { uniform: velocity, scale: 1.0, map: None }

@@ -65,7 +65,9 @@ impl ResolvedWater {
 
     /// Current at local `place`, local xz, m/s.
     pub fn current(&self, place: Vec2) -> Vec2 {
-        self.drift + self.flow.as_ref().map_or(Vec2::ZERO, |(map, scale)| map.sample(place) * *scale)
+        let Some((map, scale)) = &self.flow else { return self.drift };
+        let share = waves::shallow_fade(self.still_depth(place), WaterFlow::BANK_DEPTH);
+        self.drift + map.sample(place) * (*scale * share)
     }
 }
 
@@ -100,7 +102,7 @@ pub(crate) fn resolve_waters(
             next.flow = flow.map.clone().map(|map| (map, scale));
         }
         next.bed = bed_below(&next, &beds);
-        report_uncovered(entity, &next, &mut reported);
+        report_uncovered(entity, &next, &beds, &mut reported);
         *resolved = next;
     }
 }
@@ -173,20 +175,39 @@ fn bed_below(water: &ResolvedWater, beds: &Query<(Entity, &WaterBed, &GlobalTran
         .max_by(|a, b| a.base.total_cmp(&b.base).then(a.entity.cmp(&b.entity)))
 }
 
-/// Warns if a corner of the water lies outside its bed: there the nearest edge of the bed counts.
-fn report_uncovered(entity: Entity, water: &ResolvedWater, reported: &mut Reported) {
-    let Some(bed) = &water.bed else { return };
-    // One centimetre of grace for a water that is exactly as large as its bed.
-    let reach = (water.half_size - 0.01).max(Vec2::ZERO);
-    let corners = [vec2(1.0, 1.0), vec2(1.0, -1.0), vec2(-1.0, 1.0), vec2(-1.0, -1.0)];
-    let outside = corners
-        .iter()
-        .any(|&corner| bed.elevations.cell_at(bed.bed_from_local.transform_point2(corner * reach)).is_none());
-    if outside && water.half_size != Vec2::ZERO {
-        reported.warn(
-            entity,
-            "Water::size",
-            format_args!("reaches beyond its bed {}; the bed's edge is continued there", bed.entity),
-        );
+/// Warns if a corner of the water lies outside its bed, where the nearest edge of the bed counts, or if the water meets a
+/// bed that is none of its own.
+fn report_uncovered(
+    entity: Entity,
+    water: &ResolvedWater,
+    beds: &Query<(Entity, &WaterBed, &GlobalTransform)>,
+    reported: &mut Reported,
+) {
+    const CORNERS: [Vec2; 4] = [vec2(1.0, 1.0), vec2(1.0, -1.0), vec2(-1.0, 1.0), vec2(-1.0, -1.0)];
+    // One centimetre of grace for a water that is exactly as large as its bed, or ends where a bed begins.
+    let shrunk = |half: Vec2| (half - 0.01).max(Vec2::ZERO);
+    let in_grid = |corner: Vec2, bed_from_local: Affine2, grid: &Grid<f32>| {
+        grid.cell_at(bed_from_local.transform_point2(corner * shrunk(water.half_size))).is_some()
+    };
+    if water.half_size == Vec2::ZERO {
+        return;
+    }
+    if let Some(ResolvedBed { entity: bed, elevations, bed_from_local, .. }) = &water.bed {
+        if !CORNERS.iter().all(|&corner| in_grid(corner, *bed_from_local, elevations)) {
+            let problem = format_args!("reaches beyond its bed {bed}; the bed's edge is continued there");
+            reported.warn(entity, "Water::size", problem);
+        }
+        return;
+    }
+    for (bed, elevations, pose) in beds {
+        let grid = elevations.elevations();
+        let bed_from_local = yaw_frame(pose).inverse() * water.world_from_local;
+        let local_from_bed = bed_from_local.inverse();
+        let half = shrunk(grid.size().as_vec2() * grid.cell_size() * 0.5);
+        let in_water = |corner: Vec2| water.covers(local_from_bed.transform_point2(corner * half));
+        if in_water(Vec2::ZERO) || CORNERS.iter().any(|&c| in_water(c) || in_grid(c, bed_from_local, grid)) {
+            let problem = format_args!("reaches over bed {bed}, which does not hold its centre; it has no bed");
+            reported.warn(entity, "Water::size", problem);
+        }
     }
 }

@@ -31,8 +31,8 @@ fn layers(place: vec2<f32>, footprint: Footprint) -> vec3<f32> {
 }
 
 // Two phases half a cycle apart, each carried by the current for one cycle and faded out where it jumps back.
-fn flowing(place: vec2<f32>, footprint: Footprint) -> vec3<f32> {
-    let current = ground::mapped_current(place);
+fn flowing(place: vec2<f32>, depth: f32, footprint: Footprint) -> vec3<f32> {
+    let current = ground::mapped_current(place) * smoothstep(0.0, surface.bank_depth, depth);
     // The phase differs from place to place, so that the fades do not pulse in step.
     let offset = 0.25 * (sin(place.x * 0.213 + place.y * 0.079) + sin(place.y * 0.187 - place.x * 0.061));
     let phase = fract(vec2(surface.flow_phase + offset) + vec2(0.0, 0.5));
@@ -43,13 +43,14 @@ fn flowing(place: vec2<f32>, footprint: Footprint) -> vec3<f32> {
     return vec3(a.xy * weight.x + b.xy * weight.y, a.z * weight.x * weight.x + b.z * weight.y * weight.y);
 }
 
-fn slope(place: vec2<f32>, footprint: Footprint) -> Slope {
+// Slope of the ripples at local `place` in water of `depth` metres.
+fn slope(place: vec2<f32>, depth: f32, footprint: Footprint) -> Slope {
     if surface.detail_slope <= 0.0 {
         return Slope(vec2(0.0), 0.0);
     }
     var ripples: vec3<f32>;
     if (surface.flags & types::FLAG_FLOW) != 0u {
-        ripples = flowing(place, footprint);
+        ripples = flowing(place, depth, footprint);
     } else {
         ripples = layers(place, footprint);
     }

@@ -4,6 +4,7 @@ use bevy::{prelude::*, render::render_resource::ShaderType};
 
 /// The Rust twin of `Surface` in `types.wgsl`, where each member is explained.
 #[derive(ShaderType, Clone, Debug, Default, PartialEq)]
+#[cfg_attr(test, derive(Reflect))]
 pub(crate) struct GpuSurface {
     pub world_from_local: Mat2,
     pub world_origin: Vec2,
@@ -28,6 +29,7 @@ pub(crate) struct GpuSurface {
     pub flow_size: Vec2,
     pub flow_cycle: f32,
     pub flow_phase: f32,
+    pub bank_depth: f32,
 
     pub detail_slope: f32,
     pub detail_scale: f32,
@@ -60,4 +62,31 @@ impl GpuSurface {
     pub const FLOW: u32 = 4;
     pub const FOG: u32 = 8;
     pub const SUNLIGHT: u32 = 16;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WGSL: &str = include_str!("types.wgsl");
+
+    #[test]
+    fn the_shader_reads_what_is_written() {
+        let wgsl = WGSL.replace("#{MAX_WAVES}", &WaterWaves::MAX.to_string());
+        crate::layout::assert_same_layout::<GpuSurface, _>(&wgsl, "Surface");
+    }
+
+    #[test]
+    fn the_shader_knows_the_flags() {
+        let flags = [
+            ("MIRROR", GpuSurface::MIRROR),
+            ("BED", GpuSurface::BED),
+            ("FLOW", GpuSurface::FLOW),
+            ("FOG", GpuSurface::FOG),
+            ("SUNLIGHT", GpuSurface::SUNLIGHT),
+        ];
+        for (name, value) in flags {
+            assert!(WGSL.contains(&format!("const FLAG_{name}: u32 = {value}u;")), "{name}");
+        }
+    }
 }

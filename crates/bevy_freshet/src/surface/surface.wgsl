@@ -53,7 +53,7 @@ fn facet(rest: vec2<f32>, depth: f32) -> Facet {
     let footprint = detail::Footprint(dpdx(rest), dpdy(rest));
     let spacing = max(length(footprint.x), length(footprint.y));
     let swell = waves::slope(rest, waves::shallow_fade(depth), spacing);
-    let ripples = detail::slope(rest, footprint);
+    let ripples = detail::slope(rest, depth, footprint);
     let slope = surface.world_from_local * (swell.slope + ripples.slope);
     return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance);
 }

@@ -26,6 +26,7 @@ struct Surface {
     flow_size: vec2<f32>,           // cells
     flow_cycle: f32,                // period of the two-phase drift, units: s
     flow_phase: f32,                // 0…1
+    bank_depth: f32,                // depth from which on the flow map counts in full, units: m
 
     detail_slope: f32,              // factor on the slopes of the detail tile
     detail_scale: f32,              // tiles per metre

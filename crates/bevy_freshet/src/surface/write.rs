@@ -7,7 +7,7 @@ use super::{
     viewer::{ViewerData, Viewers},
 };
 use crate::{
-    body::{Fresnel, ResolvedWater, WaterOptics},
+    body::{Fresnel, ResolvedWater, WaterFlow, WaterOptics},
     reflection::{MirrorKey, Mirrors, WaterReflection},
     report::Reported,
 };
@@ -198,6 +198,7 @@ fn write_ground(
         gpu.flags |= GpuSurface::FLOW;
         gpu.flow_cell = map.cell_size();
         gpu.flow_size = map.size().as_vec2();
+        gpu.bank_depth = WaterFlow::BANK_DEPTH;
         // The factor is folded into the time that the map's velocity acts.
         gpu.flow_cycle *= scale;
         textures.flow = Some(ground.flow(map, images));
