@@ -2,8 +2,10 @@
 mod material;
 mod textures;
 
-use crate::body::WaterBed;
-use bevy::{asset::embedded_asset, ecs::relationship::Relationship, prelude::*, render::RenderApp};
+use crate::{body::WaterBed, report::Reported};
+use bevy::{
+    asset::embedded_asset, ecs::relationship::Relationship, material::OpaqueRendererMethod, prelude::*, render::RenderApp,
+};
 use material::{BedExtension, BedMaterial, GpuBed};
 
 /// Draws the [`WaterBed`] beside it, in pieces that are culled one by one. Each texture is optional: without it the
@@ -56,8 +58,22 @@ impl Plugin for BedPlugin {
         embedded_asset!(app, "bed.wgsl");
         app.add_plugins(MaterialPlugin::<BedMaterial>::default())
             .init_resource::<textures::PreparedTextures>()
-            .add_systems(Update, (shade_beds, textures::prepare_textures).chain());
+            .add_systems(Update, (shade_beds, textures::prepare_textures).chain())
+            .add_observer(stop_drawing::<BedShading>)
+            .add_observer(stop_drawing::<WaterBed>);
     }
+}
+
+/// Takes away material and pieces of a bed that is no longer one, or no longer drawn.
+fn stop_drawing<C: Component>(
+    removed: On<Remove, C>,
+    mut commands: Commands,
+    chunks: Query<(Entity, &ChildOf), With<BedChunk>>,
+) {
+    for (chunk, _) in chunks.iter().filter(|(_, parent)| parent.get() == removed.entity) {
+        commands.entity(chunk).try_despawn();
+    }
+    commands.entity(removed.entity).try_remove::<BedDrawing>();
 }
 
 /// Makes material and pieces anew for beds that have changed.
@@ -65,6 +81,7 @@ fn shade_beds(
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<BedMaterial>>,
+    mut reported: ResMut<Reported>,
     beds: Query<(Entity, Ref<WaterBed>, Ref<BedShading>, Option<&BedDrawing>)>,
     chunks: Query<(Entity, &ChildOf), With<BedChunk>>,
 ) {
@@ -72,11 +89,21 @@ fn shade_beds(
         if !bed.is_changed() && !shading.is_changed() {
             continue;
         }
-        let uniform = GpuBed { level: shading.level, tile: shading.tile.max(1e-3), relief: shading.relief };
+        let uniform = GpuBed {
+            level: reported.clamp(entity, "BedShading::level", shading.level, -1e5..=1e5, 0.0),
+            tile: reported.clamp(entity, "BedShading::tile", shading.tile, 1e-3..=1e4, 3.0),
+            relief: reported.clamp(entity, "BedShading::relief", shading.relief, 0.0..=0.5, 0.05),
+        };
         let known = drawing.map(|drawing| drawing.0.clone());
         let material = known.unwrap_or_else(|| {
             materials.add(BedMaterial {
-                base: StandardMaterial { perceptual_roughness: 0.95, reflectance: 0.3, ..default() },
+                base: StandardMaterial {
+                    perceptual_roughness: 0.95,
+                    reflectance: 0.3,
+                    // The layers have no deferred shader.
+                    opaque_render_method: OpaqueRendererMethod::Forward,
+                    ..default()
+                },
                 extension: BedExtension::default(),
             })
         });
@@ -84,7 +111,7 @@ fn shade_beds(
             material.extension.bed = uniform;
         }
         commands.entity(entity).try_insert(BedDrawing(material.clone()));
-        if bed.is_changed() {
+        if bed.is_changed() || drawing.is_none() {
             for (chunk, _) in chunks.iter().filter(|(_, parent)| parent.get() == entity) {
                 commands.entity(chunk).try_despawn();
             }

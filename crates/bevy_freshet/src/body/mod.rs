@@ -27,13 +27,16 @@ use bevy::{app::RunFixedMainLoopSystems, ecs::message::MessageUpdateSystems, pre
 #[reflect(Component, Default, Clone, Debug)]
 #[require(Transform, Visibility, WaterOptics, WaterWaves, WaterSurface, WaterReflection, ResolvedWater)]
 pub struct Water {
-    /// Length along local x and z, m, > 0. Default 100 × 100.
+    /// Length along local x and z, m, > 0, at most [`Water::MAX_SIZE`]. Default 100 × 100.
     ///
     /// Water of no size is not drawn and lifts nothing.
     pub size: Vec2,
 }
 
 impl Water {
+    /// Largest size along an axis, m.
+    pub const MAX_SIZE: f32 = 1e6;
+
     /// Water of `size` (local x and z, m).
     pub const fn new(size: Vec2) -> Self {
         Self { size }

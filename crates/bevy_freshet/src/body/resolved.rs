@@ -63,11 +63,19 @@ impl ResolvedWater {
         waves::shallow_fade(self.still_depth(place), self.fade_depth)
     }
 
+    /// The middle of the still surface, turned as the water.
+    pub fn pose(&self) -> Transform {
+        let (_, angle, center) = self.world_from_local.to_scale_angle_translation();
+        Transform::from_xyz(center.x, self.level, center.y).with_rotation(Quat::from_rotation_y(-angle))
+    }
+
     /// Current at local `place`, local xz, m/s.
     pub fn current(&self, place: Vec2) -> Vec2 {
         let Some((map, scale)) = &self.flow else { return self.drift };
         let share = waves::shallow_fade(self.still_depth(place), WaterFlow::BANK_DEPTH);
-        self.drift + map.sample(place) * (*scale * share)
+        let mapped = map.sample(place);
+        // A map may have gaps.
+        self.drift + if mapped.is_finite() { mapped * (*scale * share) } else { Vec2::ZERO }
     }
 }
 
@@ -115,8 +123,11 @@ fn usable_half_size(entity: Entity, water: &Water, pose: &GlobalTransform, repor
     if pose.up().y < 0.999 {
         reported.warn(entity, "Transform::rotation", "tilts the water; only the turn about y is used");
     }
-    if water.size.is_finite() && water.size.min_element() > 0.0 {
-        return water.size * 0.5;
+    if water.size.min_element() > 0.0 && water.size.max_element() > Water::MAX_SIZE {
+        reported.warn(entity, "Water::size", format_args!("is {}; {} m is used", water.size, Water::MAX_SIZE));
+    }
+    if !water.size.is_nan() && water.size.min_element() > 0.0 {
+        return water.size.min(Vec2::splat(Water::MAX_SIZE)) * 0.5;
     }
     reported.warn(entity, "Water::size", format_args!("is {}, not above zero; the water is switched off", water.size));
     Vec2::ZERO

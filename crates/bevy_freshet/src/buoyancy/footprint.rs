@@ -90,8 +90,9 @@ pub(super) fn sample_water(
             continue;
         }
         let aabb = bounds(&hull.solids, body.position());
-        let height = body.center_of_mass().y;
-        hull.footprint.lowest = aabb.mins.y;
+        // Where waters lie above one another the keel tells which one the body is in.
+        let height = aabb.mins.y;
+        hull.footprint.lowest = height;
         hull.footprint.look_up(
             Rect::from_corners(aabb.mins.xz(), aabb.maxs.xz()),
             floating.cells_per_axis.min(16) as usize,

@@ -12,7 +12,6 @@ use bevy::{
     camera::{Hdr, RenderTarget, primitives::Aabb},
     core_pipeline::tonemapping::Tonemapping,
     light::cluster::ClusterConfig,
-    math::Affine3A,
     platform::collections::HashMap,
     prelude::*,
     render::render_resource::TextureFormat,
@@ -70,6 +69,7 @@ pub(crate) fn update_mirrors(
     mut mirrors: ResMut<Mirrors>,
     mut images: ResMut<Assets<Image>>,
     mut reported: ResMut<Reported>,
+    entities: Query<()>,
     viewers: Viewers,
     waters: Query<(Entity, &ResolvedWater, &WaterReflection, &InheritedVisibility)>,
 ) {
@@ -80,6 +80,10 @@ pub(crate) fn update_mirrors(
         }
         let settings = usable_settings(entity, settings, &mut reported);
         for viewer in viewers.iter().filter(|viewer| sees(viewer, water)) {
+            if matches!(viewer.projection, Projection::Custom(_)) {
+                reported.warn(viewer.entity, "Projection", "is a custom one, of which no reflection can be drawn");
+                continue;
+            }
             let key = MirrorKey::new(viewer.entity, water.level);
             let wanted = Wanted { level: water.level, refresh: settings.refresh, settings: settings.clone() };
             match seen.get_mut(&key) {
@@ -88,20 +92,19 @@ pub(crate) fn update_mirrors(
             }
         }
     }
+    // A game that clears its cameras away takes the mirrors with them.
+    mirrors.0.retain(|_, mirror| entities.contains(mirror.entity));
     for (key, (viewer, wanted)) in &seen {
         let Some(viewer) = viewers.get(*viewer) else { continue };
-        if matches!(viewer.projection, Projection::Custom(_)) {
-            reported.warn(viewer.entity, "Projection", "is a custom one, of which no reflection can be drawn");
-            continue;
-        }
         let size = target_size(&viewer, wanted.settings.resolution);
-        let mirror = mirrors.0.entry(*key).or_insert_with(|| Mirror {
+        let mirror = mirrors.take(*key, &seen).unwrap_or_else(|| Mirror {
             entity: commands.spawn(Name::new("Water mirror camera")).id(),
             image: images.add(target_image(size)),
             size,
             clip_from_world: None,
             age: u32::MAX,
         });
+        let mirror = mirrors.0.entry(*key).or_insert(mirror);
         if mirror.size != size {
             mirror.image = images.add(target_image(size));
             (mirror.size, mirror.age, mirror.clip_from_world) = (size, u32::MAX, None);
@@ -115,6 +118,20 @@ pub(crate) fn update_mirrors(
         }
         keep
     });
+}
+
+impl Mirrors {
+    /// Takes out the mirror of `key`, or else one of the same viewer that has lost its level: a level that rises keeps
+    /// its mirror.
+    fn take(&mut self, key: MirrorKey, wanted: &HashMap<MirrorKey, (Entity, Wanted)>) -> Option<Mirror> {
+        if let Some(mirror) = self.0.remove(&key) {
+            return Some(mirror);
+        }
+        let lost = |other: &&MirrorKey| other.viewer == key.viewer && !wanted.contains_key(*other);
+        let nearest = self.0.keys().filter(lost).min_by_key(|other| (other.level.abs_diff(key.level), other.level));
+        let nearest = *nearest?;
+        self.0.remove(&nearest)
+    }
 }
 
 fn usable_settings(entity: Entity, settings: &WaterReflection, reported: &mut Reported) -> WaterReflection {
@@ -133,9 +150,7 @@ fn usable_settings(entity: Entity, settings: &WaterReflection, reported: &mut Re
 fn sees(viewer: &ViewerData, water: &ResolvedWater) -> bool {
     let above = viewer.pose.translation().y > water.level;
     let area = Aabb { half_extents: water.half_size.extend(0.5).xzy().into(), ..default() };
-    let center = water.world_from_local.translation;
-    let turn = Quat::from_rotation_y(-water.world_from_local.to_scale_angle_translation().1);
-    let place = Affine3A::from_rotation_translation(turn, vec3(center.x, water.level, center.y));
+    let place = water.pose().compute_affine();
     // An orthographic eye may lie anywhere along its rays: what counts is that it looks down.
     let above = above || matches!(viewer.projection, Projection::Orthographic(_)) && viewer.pose.forward().y < 0.0;
     above && viewer.projection.compute_frustum(viewer.pose).intersects_obb(&area, &place, true, false)
@@ -160,7 +175,12 @@ fn draw(commands: &mut Commands, mirror: &mut Mirror, viewer: &ViewerData, wante
     let global = GlobalTransform::from(pose);
     let aspect = mirror.size.x as f32 / mirror.size.y as f32;
     let plane = clip_plane(&global, wanted.level - wanted.settings.clip_offset);
-    let Some(projection) = mirrored(viewer.projection, plane, aspect).filter(|_| due) else {
+    let projection = mirrored(viewer.projection, plane, aspect);
+    if projection.is_none() {
+        // Nothing can be mirrored from here, so an old picture would be wrong.
+        (mirror.age, mirror.clip_from_world) = (u32::MAX, None);
+    }
+    let Some(projection) = projection.filter(|_| due) else {
         let order = viewer.camera.order - 1;
         commands.entity(mirror.entity).try_insert(Camera { is_active: false, order, ..default() });
         return;

@@ -26,8 +26,8 @@ pub struct WaterReflection {
     /// How far below the still surface things are still mirrored, m, 0…1. Default 0.02. Hides seams where waves dip
     /// below the mirror plane; too much mirrors what is under water.
     pub clip_offset: f32,
-    /// Assumed distance of mirrored things from the surface, m, > 0. Default 15. Waves move the picture of things at
-    /// this distance as far as in nature.
+    /// Assumed distance of mirrored things from the surface, m, > 0. Default 3. Waves move the picture of things at
+    /// this distance as far as in nature, that of nearer ones farther and that of farther ones less.
     pub distance: f32,
     /// How strongly the surface's slopes distort the reflection, 0…1. Default 1, as in nature.
     pub distortion: f32,
@@ -42,7 +42,7 @@ impl Default for WaterReflection {
             resolution: 0.5,
             refresh: 1,
             clip_offset: 0.02,
-            distance: 15.0,
+            distance: 3.0,
             distortion: 1.0,
             layers: None,
         }

@@ -77,7 +77,9 @@ pub(super) fn update_skies(
 ) {
     let drawn = skies.iter().map(|(entity, ..)| entity).min();
     for (entity, sky, mut maps, mut light, mut transform) in &mut skies {
-        if !sky.is_changed() {
+        // The next sky takes over when the one that was drawn is gone.
+        let takes_over = Some(entity) == drawn && painter.last.is_some_and(|(painted, _)| painted != entity);
+        if !sky.is_changed() && !takes_over {
             continue;
         }
         let sky = &sky.usable(entity, &mut reported);

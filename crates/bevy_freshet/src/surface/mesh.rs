@@ -1,6 +1,7 @@
 //! The mesh of the surface: nested rings of squares, fine at its centre and coarse far away.
 use bevy::{
     asset::RenderAssetUsages,
+    math::I64Vec2,
     mesh::{Indices, PrimitiveTopology},
     platform::collections::HashMap,
     prelude::*,
@@ -9,8 +10,11 @@ use bevy::{
 /// Rings around the finest part so that the mesh reaches at least `reach` metres from its centre.
 pub(super) fn rings_for(cell: f32, cells: u32, reach: f32) -> u32 {
     let inner = cell * cells as f32 * 0.5;
-    (reach / inner).max(1.0).log2().ceil() as u32
+    ((reach / inner).max(1.0).log2().ceil() as u32).min(MAX_RINGS)
 }
+
+/// Enough for the largest water with the finest mesh.
+const MAX_RINGS: u32 = 32;
 
 /// A square of `cells` × `cells` with the spacing `cell` (m), surrounded by `rings` rings, each twice as large as what it
 /// surrounds with twice its spacing. Centred on the origin in the xz plane; `cells` must be a multiple of 4.
@@ -37,23 +41,23 @@ pub(super) fn nested_grid(cell: f32, cells: u32, rings: u32) -> Mesh {
 }
 
 /// Position of a ring's vertex in finest cells; on the rim, odd vertices fall onto the even one before.
-fn builder_vertex((x, z): (i32, i32), half: i32, ring: u32, joins_coarser: bool) -> IVec2 {
+fn builder_vertex((x, z): (i32, i32), half: i32, ring: u32, joins_coarser: bool) -> I64Vec2 {
     let even = |along: i32| along - along.rem_euclid(2);
     let on_rim = |across: i32| joins_coarser && across.abs() == half;
     let x_joined = if on_rim(z) { even(x) } else { x };
     let z_joined = if on_rim(x) { even(z) } else { z };
-    ivec2(x_joined, z_joined) << ring as i32
+    ivec2(x_joined, z_joined).as_i64vec2() << i64::from(ring)
 }
 
 #[derive(Default)]
 struct Builder {
-    vertices: HashMap<IVec2, u32>,
-    positions: Vec<IVec2>,
+    vertices: HashMap<I64Vec2, u32>,
+    positions: Vec<I64Vec2>,
     indices: Vec<u32>,
 }
 
 impl Builder {
-    fn vertex(&mut self, position: IVec2) -> u32 {
+    fn vertex(&mut self, position: I64Vec2) -> u32 {
         *self.vertices.entry(position).or_insert_with(|| {
             self.positions.push(position);
             self.positions.len() as u32 - 1
@@ -61,7 +65,7 @@ impl Builder {
     }
 
     /// Two triangles, or what is left of them when corners coincide.
-    fn quad(&mut self, corners: [IVec2; 4]) {
+    fn quad(&mut self, corners: [I64Vec2; 4]) {
         for [a, b, c] in [[0, 1, 2], [0, 2, 3]].map(|triangle: [usize; 3]| triangle.map(|i| corners[i])) {
             if (b - a).perp_dot(c - a) != 0 {
                 let triangle = [a, b, c].map(|position| self.vertex(position));
@@ -71,7 +75,7 @@ impl Builder {
     }
 
     fn mesh(self, cell: f32) -> Mesh {
-        let position = |p: &IVec2| vec3(p.x as f32 * cell, 0.0, p.y as f32 * cell);
+        let position = |p: &I64Vec2| vec3(p.x as f32 * cell, 0.0, p.y as f32 * cell);
         let positions: Vec<Vec3> = self.positions.iter().map(position).collect();
         Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
             .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
@@ -119,5 +123,8 @@ mod tests {
         assert_eq!(rings_for(0.25, 64, 5.0), 0);
         assert_eq!(rings_for(0.25, 64, 8.1), 1);
         assert_eq!(rings_for(0.25, 64, 1000.0), 7);
+        // The finest mesh on the largest water: no overflow, no hole.
+        let mesh = nested_grid(0.005, 8, rings_for(0.005, 8, 2e6));
+        assert!(triangles(&mesh).iter().flatten().any(|p| p.x > 1e6));
     }
 }

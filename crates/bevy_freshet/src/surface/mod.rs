@@ -7,6 +7,7 @@ mod detail;
 mod gpu;
 mod material;
 mod mesh;
+mod ripples;
 mod sync;
 mod viewer;
 mod write;
@@ -26,6 +27,7 @@ use bevy::{
 /// How finely the surface is drawn.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, Debug)]
+#[require(ripples::Ripples)]
 pub struct WaterSurface {
     /// Spacing of the mesh near the camera, m, 0.005…100. Default 0.15. Waves shorter than four cells are drawn flatter
     /// than they are, shorter than two not at all (their normals remain).
@@ -118,9 +120,11 @@ impl Plugin for SurfacePlugin {
                 (
                     viewer::report_missing_camera,
                     (viewer::require_depth, sync::sync_surfaces).chain().in_set(WaterSystems::Present),
+                    ripples::advance_ripples.in_set(WaterSystems::Present).after(sync::sync_surfaces),
                     write::write_surfaces
                         .in_set(WaterSystems::Present)
                         .after(sync::sync_surfaces)
+                        .after(ripples::advance_ripples)
                         .after(crate::reflection::update_mirrors),
                     viewer::show_each_viewer_its_own
                         .after(VisibilitySystems::CheckVisibility)

@@ -23,7 +23,8 @@ fn is_below(behind: scene::Behind, surface_point: vec3<f32>, surface_depth: f32)
 }
 
 fn trace(at: vec3<f32>, at_depth: f32, straight: scene::Behind, pixel: vec2<f32>, ray: vec3<f32>) -> Hit {
-    if straight.depth <= 0.0 {
+    // Nothing, or what is seen through a crest above the eye: no bed.
+    if straight.depth <= 0.0 || straight.position.y >= at.y {
         return Hit(pixel, ENDLESS, ENDLESS, at + ray * ENDLESS);
     }
     // The bed is level over the shift to first order: guess its depth straight behind, look there, and correct once.
@@ -76,7 +77,7 @@ fn refracted(
         return green;
     }
     let spread = 0.5 * surface.dispersion;
-    let red = look(trace(at, frag_coord.z, straight, pixel, bend(normal, to_eye, surface.index - spread)), lit);
+    let red = look(trace(at, frag_coord.z, straight, pixel, bend(normal, to_eye, max(surface.index - spread, 1.0))), lit);
     let blue = look(trace(at, frag_coord.z, straight, pixel, bend(normal, to_eye, surface.index + spread)), lit);
     return vec3(red.r, green.g, blue.b);
 }

@@ -95,7 +95,9 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
     if (surface.flags & types::FLAG_FOG) != 0u {
         color = scene::with_fog(color, fog);
     }
-    let cover = edge(in.world.y - behind.position.y, behind.depth);
+    // Through a crest above the eye the way is along the ray, not down.
+    let way = select(in.world.y - behind.position.y, distance(in.world, behind.position), to_eye.y <= 0.0);
+    let cover = edge(way, behind.depth);
     color = mix(scene::color_behind(pixel), color, cover);
 
     switch surface.view {

@@ -82,11 +82,20 @@ impl FromWorld for SurfaceAssets {
 /// What the shader reads where the bed has no data, m.
 const NO_DATA_ELEVATION: f32 = 1e6;
 
+impl SurfaceAssets {
+    /// Drops meshes that no surface uses any more.
+    fn collect(&mut self) {
+        self.meshes.retain(|_, mesh| matches!(mesh, Handle::Strong(shared) if Arc::strong_count(shared) > 1));
+    }
+}
+
 /// Beds and flow maps as textures, one for each grid however many waters use it.
 #[derive(Resource, Default)]
 pub(crate) struct GroundTextures {
     beds: Vec<(Arc<Grid<f32>>, Handle<Image>)>,
     flows: Vec<(Arc<Grid<Vec2>>, Handle<Image>)>,
+    /// Largest speed of each flow map, m/s.
+    fastest: Vec<(Arc<Grid<Vec2>>, f32)>,
 }
 
 impl GroundTextures {
@@ -101,7 +110,7 @@ impl GroundTextures {
     }
 
     pub fn flow(&mut self, grid: &Arc<Grid<Vec2>>, images: &mut Assets<Image>) -> Handle<Image> {
-        let texel = |v: &Vec2| v.to_array().map(f32::to_le_bytes).concat();
+        let texel = |v: &Vec2| if v.is_finite() { *v } else { Vec2::ZERO }.to_array().map(f32::to_le_bytes).concat();
         let image = || {
             let data = grid.values().iter().flat_map(texel).collect();
             grid_image("water_flow", grid.size(), TextureFormat::Rg32Float, data)
@@ -112,21 +121,27 @@ impl GroundTextures {
     /// Drops the textures of grids that nothing else uses.
     fn collect(&mut self) {
         self.beds.retain(|(grid, _)| Arc::strong_count(grid) > 1);
-        self.flows.retain(|(grid, _)| Arc::strong_count(grid) > 1);
+        // Held here twice: beside the texture and beside the largest speed.
+        self.flows.retain(|(grid, _)| Arc::strong_count(grid) > 2);
+        self.fastest.retain(|(grid, _)| Arc::strong_count(grid) > 1);
+    }
+
+    /// Largest speed of a flow map, m/s.
+    pub fn fastest(&mut self, grid: &Arc<Grid<Vec2>>) -> f32 {
+        shared(&mut self.fastest, grid, || {
+            grid.values().iter().filter(|v| v.is_finite()).map(|v| v.length()).fold(0.0, f32::max)
+        })
     }
 }
 
-fn shared<T>(
-    known: &mut Vec<(Arc<Grid<T>>, Handle<Image>)>,
-    grid: &Arc<Grid<T>>,
-    make: impl FnOnce() -> Handle<Image>,
-) -> Handle<Image> {
-    if let Some((_, image)) = known.iter().find(|(other, _)| Arc::ptr_eq(other, grid)) {
-        return image.clone();
+/// What is known of `grid`, made when it is asked for the first time.
+fn shared<T, U: Clone>(known: &mut Vec<(Arc<Grid<T>>, U)>, grid: &Arc<Grid<T>>, make: impl FnOnce() -> U) -> U {
+    if let Some((_, of_grid)) = known.iter().find(|(other, _)| Arc::ptr_eq(other, grid)) {
+        return of_grid.clone();
     }
-    let image = make();
-    known.push((grid.clone(), image.clone()));
-    image
+    let of_grid = make();
+    known.push((grid.clone(), of_grid.clone()));
+    of_grid
 }
 
 fn grid_image(label: &'static str, size: UVec2, format: TextureFormat, data: Vec<u8>) -> Image {
@@ -150,6 +165,7 @@ pub(super) fn sync_surfaces(
     mut surfaces: Query<(Entity, &SurfaceOf, &mut SurfaceShape, &mut Mesh3d)>,
 ) {
     ground.collect();
+    assets.collect();
     let mut missing: HashSet<SurfaceOf> = viewers
         .iter()
         .flat_map(|viewer| waters.iter().map(move |water| SurfaceOf { water: water.0, viewer: viewer.entity }))
@@ -203,9 +219,7 @@ pub(super) fn sync_surfaces(
 /// Pose and bounds of a surface: its vertices are placed by the shader, so the bounds are what culling knows of it.
 fn place(water: &ResolvedWater) -> (Transform, GlobalTransform, Aabb) {
     let amplitude = water.waves.total_amplitude() + 0.01;
-    let turn = Quat::from_rotation_y(-water.world_from_local.to_scale_angle_translation().1);
-    let center = water.world_from_local.translation;
-    let pose = Transform::from_xyz(center.x, water.level, center.y).with_rotation(turn);
+    let pose = water.pose();
     let half = water.half_size + amplitude;
     let bounds = Aabb3d::new(Vec3::ZERO, vec3(half.x, amplitude, half.y));
     (pose, pose.into(), Aabb::from_min_max(bounds.min.into(), bounds.max.into()))

@@ -7,7 +7,7 @@ use bevy::{
         visibility::{RenderLayers, VisibleEntities},
     },
     core_pipeline::prepass::DepthPrepass,
-    ecs::{query::QueryData, system::SystemParam},
+    ecs::{entity::EntityHashSet, query::QueryData, system::SystemParam},
     light::{EnvironmentMapLight, ShadowFilteringMethod, Skybox},
     pbr::DistanceFog,
     prelude::*,
@@ -58,7 +58,7 @@ impl ViewerData<'_> {
         fn copy<C: Component + Clone>(from: Option<&C>, to: &mut EntityCommands) {
             match from {
                 Some(component) => to.try_insert(component.clone()),
-                None => to.remove::<C>(),
+                None => to.try_remove::<C>(),
             };
         }
         copy(self.environment, mirror);
@@ -136,15 +136,15 @@ pub(super) fn report_missing_camera(
 /// Takes out of every camera's list the surfaces that belong to another camera.
 ///
 /// Render layers could do this too, but they are the game's, and there are too few.
-pub(super) fn show_each_viewer_its_own(mut views: Query<(Entity, &mut VisibleEntities)>, surfaces: Query<&SurfaceOf>) {
-    if surfaces.is_empty() {
-        return;
-    }
+pub(super) fn show_each_viewer_its_own(
+    mut views: Query<(Entity, &mut VisibleEntities)>,
+    surfaces: Query<(Entity, &SurfaceOf)>,
+) {
     for (view, mut visible) in &mut views {
-        let foreign = |entity: &Entity| surfaces.get(*entity).is_ok_and(|surface| surface.viewer != view);
-        let meshes = TypeId::of::<Mesh3d>();
-        if visible.get(meshes).iter().any(foreign) {
-            visible.get_mut(meshes).retain(|entity| !foreign(entity));
+        let foreign: EntityHashSet =
+            surfaces.iter().filter(|(_, surface)| surface.viewer != view).map(|(entity, _)| entity).collect();
+        if !foreign.is_empty() {
+            visible.get_mut(TypeId::of::<Mesh3d>()).retain(|entity| !foreign.contains(entity));
         }
     }
 }

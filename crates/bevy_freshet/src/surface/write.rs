@@ -3,6 +3,7 @@ use super::{
     SurfaceView, WaterSurface,
     gpu::GpuSurface,
     material::SurfaceMaterial,
+    ripples::Ripples,
     sync::{GroundTextures, SurfaceOf, SurfaceShape},
     viewer::{ViewerData, Viewers},
 };
@@ -21,19 +22,23 @@ use bevy::{
     },
 };
 
-/// Longest way that the current carries a ripple before it is faded out and starts anew, in tiles.
-const DRIFT_TILES: f32 = 0.5;
-
 /// The waters with everything that is written of them.
 type Waters<'w, 's> = Query<
     'w,
     's,
-    (Entity, &'static ResolvedWater, &'static WaterSurface, &'static WaterOptics, &'static WaterReflection),
+    (
+        Entity,
+        &'static ResolvedWater,
+        &'static WaterSurface,
+        &'static Ripples,
+        &'static WaterOptics,
+        &'static WaterReflection,
+    ),
 >;
 
 pub(super) fn write_surfaces(
-    time: Res<Time>,
     clear_color: Res<ClearColor>,
+    assets: Res<AssetServer>,
     mirrors: Res<Mirrors>,
     mut ground: ResMut<GroundTextures>,
     mut images: ResMut<Assets<Image>>,
@@ -53,15 +58,15 @@ pub(super) fn write_surfaces(
     let plain_sky = plain_sky.get_or_insert_with(|| images.add(white_cube())).clone();
     for (surface, shape, material_handle) in &surfaces {
         let (Ok(water), Some(viewer)) = (waters.get(surface.water), viewers.get(surface.viewer)) else { continue };
-        let (entity, resolved, settings, optics, reflection) = water;
+        let (entity, resolved, settings, ripples, optics, reflection) = water;
         let mut gpu = GpuSurface::default();
         let mut textures = Textures::default();
         write_frame(&mut gpu, resolved, shape, &viewer);
         write_optics(&mut gpu, entity, optics, &mut reported);
-        write_detail(&mut gpu, entity, settings, resolved, time.elapsed_secs_f64(), &mut reported);
+        write_detail(&mut gpu, entity, settings, ripples, &mut reported);
         write_ground(&mut gpu, &mut textures, resolved, &mut ground, &mut images);
         write_mirror(&mut gpu, &mut textures, entity, reflection, resolved, &viewer, &mirrors, &mut reported);
-        write_sky(&mut gpu, &mut textures, &viewer, &clear_color, &plain_sky);
+        write_sky(&mut gpu, &mut textures, &viewer, &clear_color, &plain_sky, &assets);
 
         let Some(material) = materials.get(material_handle) else { continue };
         let wanted = SurfaceMaterial {
@@ -132,34 +137,20 @@ fn write_optics(gpu: &mut GpuSurface, entity: Entity, optics: &WaterOptics, repo
     gpu.flags |= if optics.fog { GpuSurface::FOG } else { 0 };
 }
 
-/// The two layers of ripples travel with the phase speed of their mean wavelength, apart by an angle, and with the
-/// uniform part of the current.
 fn write_detail(
     gpu: &mut GpuSurface,
     entity: Entity,
     settings: &WaterSurface,
-    water: &ResolvedWater,
-    time: f64,
+    ripples: &Ripples,
     reported: &mut Reported,
 ) {
     gpu.detail_slope = reported.clamp(entity, "WaterSurface::ripples", settings.ripples, 0.0..=1.0, 0.045);
-    let size = reported.clamp(entity, "WaterSurface::ripple_size", settings.ripple_size, 1e-3..=1e4, 4.0);
     gpu.roughness = reported.clamp(entity, "WaterSurface::roughness", settings.roughness, 1e-4..=0.5, 0.002);
-    gpu.detail_scale = size.recip();
-    // The middle of the tile's octaves holds about 12 waves; the second layer is half as large.
-    let speed = |waves: f32| {
-        let wavenumber = core::f32::consts::TAU * waves / size;
-        freshet_hydro::waves::angular_frequency(wavenumber, f32::INFINITY) / wavenumber
-    };
-    let wind = water.waves.trains.first().map_or(Vec2::X, |train| train.wave_vector.normalize_or(Vec2::X));
-    let second = Mat2::from_cols(vec2(1.7321, 1.0), vec2(-1.0, 1.7321));
-    let drift = |velocity: Vec2| {
-        let shift = velocity.as_dvec2() * time / f64::from(size);
-        (shift - shift.floor()).as_vec2()
-    };
-    let first = drift(wind * speed(12.0) + water.drift);
-    let turned = drift(second * (Vec2::from_angle(0.7).rotate(wind) * speed(24.0) + water.drift));
-    gpu.detail_drift = first.extend(turned.x).extend(turned.y);
+    gpu.detail_scale = ripples.size.recip();
+    let [first, second] = ripples.shifts.map(|shift| shift.as_vec2());
+    gpu.detail_drift = first.extend(second.x).extend(second.y);
+    gpu.flow_cycle = ripples.cycle;
+    gpu.flow_phase = ripples.phase as f32;
     gpu.flags |= if settings.sunlight { GpuSurface::SUNLIGHT } else { 0 };
     gpu.view = match settings.view {
         SurfaceView::Water => 0,
@@ -170,12 +161,6 @@ fn write_detail(
         SurfaceView::Height => 5,
         SurfaceView::Edge => 6,
     };
-    if let Some((map, scale)) = &water.flow {
-        // The fastest water drifts by a fixed share of a tile in a cycle: nothing is stretched far.
-        let fastest = map.values().iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt() * scale.abs();
-        gpu.flow_cycle = (DRIFT_TILES * size / fastest.max(1e-3)).min(20.0);
-        gpu.flow_phase = (time / f64::from(gpu.flow_cycle)).fract() as f32;
-    }
 }
 
 fn write_ground(
@@ -216,7 +201,7 @@ fn write_mirror(
     reported: &mut Reported,
 ) {
     let mut clamp = |field, value, range, fallback| reported.clamp(entity, field, value, range, fallback);
-    gpu.mirror_distance = clamp("WaterReflection::distance", reflection.distance, 0.01..=1e5, 15.0);
+    gpu.mirror_distance = clamp("WaterReflection::distance", reflection.distance, 0.01..=1e5, 3.0);
     gpu.mirror_distortion = clamp("WaterReflection::distortion", reflection.distortion, 0.0..=1.0, 1.0);
     let mirror = mirrors.0.get(&MirrorKey::new(viewer.entity, water.level)).filter(|_| reflection.planar);
     if let Some((mirror, clip_from_world)) = mirror.and_then(|mirror| Some((mirror, mirror.clip_from_world?))) {
@@ -233,19 +218,25 @@ fn write_sky(
     viewer: &ViewerData,
     clear_color: &ClearColor,
     plain_sky: &Handle<Image>,
+    assets: &AssetServer,
 ) {
+    // A material whose texture is not there is not drawn at all. Images that were made and not loaded have no state.
+    let is_there = |image: &Handle<Image>| assets.get_load_state(image).is_none_or(|state| state.is_loaded());
     let exposure = viewer.exposure.copied().unwrap_or_default().exposure();
-    let (sky, light, tint, rotation) = if let Some(map) = viewer.environment {
-        (map.specular_map.clone(), map.diffuse_map.clone(), Vec3::splat(map.intensity * exposure), map.rotation)
-    } else if let Some((skybox, image)) = viewer.skybox.and_then(|skybox| Some((skybox, skybox.image.clone()?))) {
-        (image.clone(), image, Vec3::splat(skybox.brightness * exposure), skybox.rotation)
-    } else {
-        let color = match viewer.camera.clear_color {
-            ClearColorConfig::Custom(color) => color,
-            ClearColorConfig::Default | ClearColorConfig::None => clear_color.0,
+    let (sky, light, tint, rotation) =
+        if let Some(map) = viewer.environment.filter(|map| is_there(&map.specular_map) && is_there(&map.diffuse_map)) {
+            (map.specular_map.clone(), map.diffuse_map.clone(), Vec3::splat(map.intensity * exposure), map.rotation)
+        } else if let Some((skybox, image)) =
+            viewer.skybox.and_then(|skybox| Some((skybox, skybox.image.clone().filter(is_there)?)))
+        {
+            (image.clone(), image, Vec3::splat(skybox.brightness * exposure), skybox.rotation)
+        } else {
+            let color = match viewer.camera.clear_color {
+                ClearColorConfig::Custom(color) => color,
+                ClearColorConfig::Default | ClearColorConfig::None => clear_color.0,
+            };
+            (plain_sky.clone(), plain_sky.clone(), color.to_linear().to_vec3(), Quat::IDENTITY)
         };
-        (plain_sky.clone(), plain_sky.clone(), color.to_linear().to_vec3(), Quat::IDENTITY)
-    };
     gpu.sky_from_world = Mat3::from_quat(rotation.inverse());
     gpu.sky_tint = tint;
     textures.sky = Some(sky);
