@@ -11,6 +11,7 @@ mod sync;
 mod viewer;
 mod write;
 
+pub(crate) use sync::sync_surfaces;
 pub use viewer::NoWater;
 pub(crate) use viewer::{ViewerData, Viewers};
 
@@ -18,6 +19,7 @@ use crate::schedule::WaterSystems;
 use bevy::{
     asset::embedded_asset,
     camera::{CameraUpdateSystems, visibility::VisibilitySystems},
+    light::SimulationLightSystems,
     prelude::*,
     render::RenderApp,
     shader::load_shader_library,
@@ -109,6 +111,7 @@ impl Plugin for SurfacePlugin {
                 WaterSystems::Present
                     .after(WaterSystems::Resolve)
                     .after(TransformSystems::Propagate)
+                    .after(VisibilitySystems::VisibilityPropagate)
                     .before(CameraUpdateSystems)
                     .before(VisibilitySystems::UpdateFrusta)
                     .before(VisibilitySystems::CalculateBounds),
@@ -116,14 +119,12 @@ impl Plugin for SurfacePlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    viewer::report_missing_camera,
+                    viewer::report_missing_camera.in_set(WaterSystems::Present).before(sync::sync_surfaces),
                     (viewer::require_depth, sync::sync_surfaces).chain().in_set(WaterSystems::Present),
-                    write::write_surfaces
-                        .in_set(WaterSystems::Present)
-                        .after(sync::sync_surfaces)
-                        .after(crate::reflection::update_mirrors),
+                    write::write_surfaces.in_set(WaterSystems::Present).after(crate::reflection::update_mirrors),
                     viewer::show_each_viewer_its_own
                         .after(VisibilitySystems::CheckVisibility)
+                        .after(SimulationLightSystems::CheckLightVisibility)
                         .before(VisibilitySystems::MarkNewlyHiddenEntitiesInvisible),
                 ),
             );
