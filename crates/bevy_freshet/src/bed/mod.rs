@@ -4,7 +4,8 @@ mod textures;
 
 use crate::{body::WaterBed, report::Reported};
 use bevy::{
-    asset::embedded_asset, ecs::relationship::Relationship, material::OpaqueRendererMethod, prelude::*, render::RenderApp,
+    asset::embedded_asset, ecs::relationship::Relationship, material::OpaqueRendererMethod, prelude::*,
+    render::RenderApp,
 };
 use material::{BedExtension, BedMaterial, GpuBed};
 

@@ -12,6 +12,7 @@ mod sync;
 mod viewer;
 mod write;
 
+pub(crate) use sync::sync_surfaces;
 pub use viewer::NoWater;
 pub(crate) use viewer::{ViewerData, Viewers};
 
@@ -19,6 +20,7 @@ use crate::schedule::WaterSystems;
 use bevy::{
     asset::embedded_asset,
     camera::{CameraUpdateSystems, visibility::VisibilitySystems},
+    light::SimulationLightSystems,
     prelude::*,
     render::RenderApp,
     shader::load_shader_library,
@@ -111,6 +113,7 @@ impl Plugin for SurfacePlugin {
                 WaterSystems::Present
                     .after(WaterSystems::Resolve)
                     .after(TransformSystems::Propagate)
+                    .after(VisibilitySystems::VisibilityPropagate)
                     .before(CameraUpdateSystems)
                     .before(VisibilitySystems::UpdateFrusta)
                     .before(VisibilitySystems::CalculateBounds),
@@ -118,16 +121,18 @@ impl Plugin for SurfacePlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    viewer::report_missing_camera,
-                    (viewer::require_depth, sync::sync_surfaces).chain().in_set(WaterSystems::Present),
-                    ripples::advance_ripples.in_set(WaterSystems::Present).after(sync::sync_surfaces),
-                    write::write_surfaces
-                        .in_set(WaterSystems::Present)
-                        .after(sync::sync_surfaces)
-                        .after(ripples::advance_ripples)
-                        .after(crate::reflection::update_mirrors),
+                    (
+                        viewer::report_missing_camera,
+                        viewer::require_depth,
+                        sync::sync_surfaces,
+                        ripples::advance_ripples,
+                        write::write_surfaces.after(crate::reflection::update_mirrors),
+                    )
+                        .chain()
+                        .in_set(WaterSystems::Present),
                     viewer::show_each_viewer_its_own
                         .after(VisibilitySystems::CheckVisibility)
+                        .after(SimulationLightSystems::CheckLightVisibility)
                         .before(VisibilitySystems::MarkNewlyHiddenEntitiesInvisible),
                 ),
             );

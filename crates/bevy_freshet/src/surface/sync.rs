@@ -152,7 +152,7 @@ fn grid_image(label: &'static str, size: UVec2, format: TextureFormat, data: Vec
 }
 
 /// Spawns, shapes and despawns surface entities so that there is one for every water and viewing camera.
-pub(super) fn sync_surfaces(
+pub(crate) fn sync_surfaces(
     mut commands: Commands,
     mut assets: ResMut<SurfaceAssets>,
     mut ground: ResMut<GroundTextures>,
