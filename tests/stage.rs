@@ -82,7 +82,7 @@ impl Stage {
         .init_resource::<Taken>();
         build(&mut app);
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            render_app.add_systems(Render, wait_for_gpu.in_set(RenderSystems::PostCleanup));
+            render_app.add_systems(Render, wait_for_gpu.in_set(RenderSystems::PostCleanup).ambiguous_with_all());
         }
         while app.plugins_state() == PluginsState::Adding {
             bevy::tasks::tick_global_task_pools_on_main_thread();

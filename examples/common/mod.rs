@@ -89,7 +89,7 @@ pub fn app(title: &str, options: &Options) -> App {
         )
         .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            render_app.add_systems(Render, wait_for_gpu.in_set(RenderSystems::PostCleanup));
+            render_app.add_systems(Render, wait_for_gpu.in_set(RenderSystems::PostCleanup).ambiguous_with_all());
         }
         let target = Image::new_target_texture(options.size.x, options.size.y, TextureFormat::Rgba8UnormSrgb, None);
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(target);

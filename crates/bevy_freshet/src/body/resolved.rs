@@ -123,10 +123,11 @@ fn usable_half_size(entity: Entity, water: &Water, pose: &GlobalTransform, repor
     if pose.up().y < 0.999 {
         reported.warn(entity, "Transform::rotation", "tilts the water; only the turn about y is used");
     }
-    if water.size.min_element() > 0.0 && water.size.max_element() > Water::MAX_SIZE {
+    let usable = water.size.is_finite() && water.size.min_element() > 0.0;
+    if usable && water.size.max_element() > Water::MAX_SIZE {
         reported.warn(entity, "Water::size", format_args!("is {}; {} m is used", water.size, Water::MAX_SIZE));
     }
-    if !water.size.is_nan() && water.size.min_element() > 0.0 {
+    if usable {
         return water.size.min(Vec2::splat(Water::MAX_SIZE)) * 0.5;
     }
     reported.warn(entity, "Water::size", format_args!("is {}, not above zero; the water is switched off", water.size));

@@ -54,7 +54,9 @@ pub(crate) struct ReflectionPlugin;
 
 impl Plugin for ReflectionPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Mirrors>()
-            .add_systems(PostUpdate, update_mirrors.in_set(WaterSystems::Present).after(crate::surface::sync_surfaces));
+        app.init_resource::<Mirrors>().add_systems(
+            PostUpdate,
+            update_mirrors.in_set(WaterSystems::Present).after(crate::surface::advance_ripples),
+        );
     }
 }

@@ -12,7 +12,7 @@ mod sync;
 mod viewer;
 mod write;
 
-pub(crate) use sync::sync_surfaces;
+pub(crate) use ripples::advance_ripples;
 pub use viewer::NoWater;
 pub(crate) use viewer::{ViewerData, Viewers};
 
@@ -125,7 +125,7 @@ impl Plugin for SurfacePlugin {
                         viewer::report_missing_camera,
                         viewer::require_depth,
                         sync::sync_surfaces,
-                        ripples::advance_ripples,
+                        advance_ripples,
                         write::write_surfaces.after(crate::reflection::update_mirrors),
                     )
                         .chain()

@@ -29,7 +29,7 @@ pub(crate) struct Ripples {
 
 /// Lets every water's ripples travel: with the phase speed of their mean wavelength, the layers at an angle to each
 /// other, and with the uniform part of the current.
-pub(super) fn advance_ripples(
+pub(crate) fn advance_ripples(
     time: Res<Time>,
     mut ground: ResMut<GroundTextures>,
     mut reported: ResMut<Reported>,

@@ -162,7 +162,7 @@ pub(crate) fn sync_surfaces(
     mut reported: ResMut<Reported>,
     viewers: Viewers,
     waters: Query<(Entity, &WaterSurface, &ResolvedWater, &InheritedVisibility, Option<&RenderLayers>)>,
-    mut surfaces: Query<(Entity, &SurfaceOf, &mut SurfaceShape, &mut Mesh3d)>,
+    mut surfaces: Query<(Entity, &SurfaceOf, &mut SurfaceShape)>,
 ) {
     ground.collect();
     assets.collect();
@@ -174,7 +174,7 @@ pub(crate) fn sync_surfaces(
         let make = || meshes.add(nested_grid(shape.cell, shape.cells, shape.rings));
         Mesh3d(assets.meshes.entry(shape.key()).or_insert_with(make).clone())
     };
-    for (entity, surface, mut shape, mut mesh) in &mut surfaces {
+    for (entity, surface, mut shape) in &mut surfaces {
         let water = waters.get(surface.water).ok().filter(|_| missing.remove(surface));
         let Some((water, settings, resolved, visibility, layers)) = water else {
             commands.entity(entity).try_despawn();
@@ -183,7 +183,7 @@ pub(crate) fn sync_surfaces(
         let wanted = SurfaceShape::new(water, settings, resolved, &mut reported);
         if *shape != wanted {
             *shape = wanted;
-            *mesh = mesh_of(&wanted, &mut assets);
+            commands.entity(entity).try_insert(mesh_of(&wanted, &mut assets));
         }
         let shown = visibility.get() && resolved.half_size != Vec2::ZERO;
         let visible = if shown { Visibility::Visible } else { Visibility::Hidden };
