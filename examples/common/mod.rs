@@ -1,4 +1,4 @@
-//! What the examples share: the command line, and an app with a window or, without a display, one that writes a picture.
+//! What the examples share: the command line, and an app with a window or, with `--out`, one that writes a picture.
 use bevy::{
     app::PluginsState,
     camera::RenderTarget,

@@ -31,7 +31,7 @@ pub struct WaterOptics {
     pub absorption: Vec3,
     /// Backscattering `b_b`, 1/m, ≥ 0: what makes turbid water bright. Zero switches scattering off.
     pub backscatter: Vec3,
-    /// Refractive index, 1…3. Default 1.333. At 1 nothing is refracted or reflected.
+    /// Refractive index, 1…3. Default 1.333. At 1 nothing is refracted, and nothing reflected by [`Fresnel::Exact`].
     pub index: f32,
     /// How the reflected share depends on the angle. Default [`Fresnel::Exact`].
     pub fresnel: Fresnel,
