@@ -162,3 +162,21 @@ fn a_server_without_a_renderer_answers_queries() {
     assert!((sample.height - 3.0).abs() < 0.2);
     assert_eq!(sample.depth, f32::INFINITY);
 }
+
+#[test]
+fn a_camera_as_bevy_makes_it_sees_the_same_water() {
+    use bevy::{camera::Hdr, core_pipeline::tonemapping::Tonemapping};
+    let (mut stage, camera) = river_stage();
+    stage.app.insert_resource(ClearColor(Color::linear_rgb(0.3, 0.5, 0.7)));
+    stage.app.world_mut().entity_mut(camera).insert(Tonemapping::Reinhard);
+    let with_hdr = stage.picture(camera);
+    // Without `Hdr` the surface tone-maps itself, and the scene behind it arrives tone-mapped.
+    stage.app.world_mut().entity_mut(camera).remove::<Hdr>();
+    let without = stage.picture(camera);
+    let mut differences: Vec<f32> =
+        with_hdr.pixels().zip(without.pixels()).map(|((_, a), (_, b))| (a - b).abs().max_element()).collect();
+    differences.sort_by(f32::total_cmp);
+    let (median, high) = (differences[differences.len() / 2], differences[differences.len() * 9 / 10]);
+    assert!(median < 0.02 && high < 0.06, "median {median}, nine tenths below {high}");
+    assert!(without.at(SIZE.x / 2, SIZE.y * 3 / 4).max_element() > 0.02, "there is water");
+}
