@@ -221,3 +221,36 @@ fn the_bed_keeps_its_own_fog_only_once() {
         assert!((wet - dry).abs() < 0.01, "row {y}: under a film of water {wet}, dry {dry}");
     }
 }
+
+#[test]
+fn the_sunlights_own_way_down_is_counted() {
+    let mut stage = Stage::new();
+    let (water, waves, surface, optics) = still_water(Vec2::splat(600.0));
+    stage.spawn((water, waves, surface, WaterOptics { absorption: ABSORPTION, reflectivity: 0.0, ..optics }));
+    let white = Plane3d::default().mesh().size(2000.0, 2000.0);
+    stage.paint(white, LinearRgba::WHITE, Transform::from_xyz(0.0, -1.5, 0.0));
+    // A sun 40° from the zenith goes on under 28.83° below the surface.
+    let to_sun = Quat::from_rotation_z(40f32.to_radians()) * Vec3::Y;
+    stage.spawn((DirectionalLight::default(), Transform::default().looking_to(-to_sun, Vec3::X)));
+    let camera = slanted(&mut stage, 0.0);
+    let sine = 40f32.to_radians().sin() / 1.333;
+    let way = 1.5 + 1.5 / (1.0 - sine * sine).sqrt();
+    assert_close(center(&mut stage, camera), (-ABSORPTION * way).exp(), 0.02);
+}
+
+#[test]
+fn deep_turbid_water_returns_its_share_of_the_light() {
+    let backscatter = vec3(0.3, 0.2, 0.1);
+    let mut stage = Stage::new();
+    let (water, waves, surface, optics) = still_water(Vec2::splat(600.0));
+    let optics = WaterOptics { absorption: ABSORPTION, backscatter, reflectivity: 0.0, ..optics };
+    stage.spawn((water, waves, surface, optics));
+    let illuminance = 2_000.0;
+    let sun = DirectionalLight { illuminance, shadow_maps_enabled: false, ..default() };
+    stage.spawn((sun, Transform::default().looking_to(Vec3::NEG_Y, Vec3::X)));
+    let camera = slanted(&mut stage, 0.0);
+    // 0.33 b_b/(a + b_b) E/π (Morel and Prieur 1977) of what enters the water.
+    let entering = illuminance * bevy::camera::Exposure::default().exposure() * (1.0 - fresnel_exact(1.0, 1.333));
+    let share = 0.33 * backscatter / (ABSORPTION + backscatter);
+    assert_close(center(&mut stage, camera), share * entering / core::f32::consts::PI, 0.02);
+}
