@@ -1,5 +1,5 @@
 //! Integration tests of the plugin: one binary, so that Bevy is linked once. A module per theme.
-#![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
+#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
 mod said;
 mod stage;

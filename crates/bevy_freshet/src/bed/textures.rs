@@ -3,7 +3,7 @@ use super::{BedDrawing, BedMaterial, BedShading};
 use crate::report::Reported;
 use bevy::{
     asset::{LoadState, RenderAssetUsages},
-    image::{ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
+    image::{ImageAddressMode, ImageSampler, ImageSamplerDescriptor},
     platform::collections::{HashMap, HashSet},
     prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
@@ -81,10 +81,7 @@ fn tiling() -> ImageSampler {
         label: Some("bed".into()),
         address_mode_u: ImageAddressMode::Repeat,
         address_mode_v: ImageAddressMode::Repeat,
-        mag_filter: ImageFilterMode::Linear,
-        min_filter: ImageFilterMode::Linear,
-        mipmap_filter: ImageFilterMode::Linear,
-        ..default()
+        ..ImageSamplerDescriptor::linear()
     })
 }
 

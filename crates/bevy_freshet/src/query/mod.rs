@@ -20,7 +20,7 @@ pub struct WaterSample {
 /// Answers where the water is: the same surface that is drawn, at the clock of the schedule that asks (the fixed clock
 /// in `FixedUpdate`, the virtual clock in `Update`).
 ///
-/// Costs one Gerstner sum per iteration of the search for the particle above a place, about 1 µs for eight trains.
+/// Costs one Gerstner sum per iteration of the search for the particle above a place.
 #[derive(SystemParam)]
 pub struct WaterQuery<'w, 's> {
     waters: Query<'w, 's, (Entity, &'static ResolvedWater)>,

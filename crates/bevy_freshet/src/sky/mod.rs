@@ -14,7 +14,7 @@
 //! Air comes from the model of Hošek & Wilkie (2012), sunlight from the extinction of the air mass, twilight from measured
 //! illuminance, clouds from noise lit by all of these. Everything is in cd/m² and lux. It is computed on the CPU when a
 //! [`Sky`] changes, so a sky that stands still costs nothing. It is not for a sun that moves in every frame: a repaint of
-//! the default resolution takes a few tenths of a second, and three times that when the clouds are new.
+//! the default resolution took 0.5 to 1.1 s on two busy cores, and 2.2 to 2.9 s when the clouds were new.
 //!
 //! Without `Assets<Image>`, as on a server, nothing runs. The same [`Sky`] gives the same bytes on the same machine.
 
