@@ -15,6 +15,7 @@ pub mod query;
 pub mod reflection;
 mod report;
 mod schedule;
+pub mod simulation;
 pub mod sky;
 pub mod surface;
 
@@ -27,7 +28,7 @@ pub mod prelude {
     pub use crate::{
         WaterPlugin, WaterSystems,
         bed::BedShading,
-        body::{Fresnel, Water, WaterBed, WaterFlow, WaterOptics, WaterWaves},
+        body::{Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterInteraction, WaterOptics, WaterWaves},
         query::{WaterQuery, WaterSample},
         reflection::WaterReflection,
         surface::{NoWater, SurfaceView, WaterSurface},

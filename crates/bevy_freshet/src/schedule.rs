@@ -15,6 +15,9 @@ pub enum WaterSystems {
     /// Forces of the water are handed to the physics engine. In `FixedUpdate`, after [`WaterSystems::Sample`] and before
     /// Rapier's `PhysicsSet::StepSimulation`.
     Force,
+    /// Silhouettes of bodies, touches and rain are gathered for the simulated fields. In `PostUpdate`, after
+    /// [`WaterSystems::Resolve`] and before [`WaterSystems::Present`].
+    Displace,
     /// Surfaces, mirrors and their GPU data follow waters and cameras. In `PostUpdate`, after
     /// [`WaterSystems::Resolve`] and before Bevy's `CameraUpdateSystems` and `VisibilitySystems::UpdateFrusta`.
     Present,

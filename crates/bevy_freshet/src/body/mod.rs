@@ -1,12 +1,16 @@
 //! The components that describe a water: where it is, what it is made of, how it moves.
 mod bed;
 mod flow;
+mod foam;
+mod interaction;
 mod optics;
 mod resolved;
 mod waves;
 
 pub use bed::{WaterBed, WaterBedError};
 pub use flow::WaterFlow;
+pub use foam::WaterFoam;
+pub use interaction::WaterInteraction;
 pub use optics::{Fresnel, WaterOptics};
 pub(crate) use resolved::ResolvedWater;
 pub use waves::{WaterWaves, Wave};
@@ -15,6 +19,7 @@ use crate::{
     reflection::WaterReflection,
     report::{Reported, forget_despawned},
     schedule::WaterSystems,
+    simulation::{Deposits, FieldPictures, FieldWindow},
     surface::WaterSurface,
 };
 use bevy::{app::RunFixedMainLoopSystems, ecs::message::MessageUpdateSystems, prelude::*};
@@ -25,7 +30,20 @@ use bevy::{app::RunFixedMainLoopSystems, ecs::message::MessageUpdateSystems, pre
 /// Everything else about it is a component beside this one, with a useful default.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, Debug)]
-#[require(Transform, Visibility, WaterOptics, WaterWaves, WaterSurface, WaterReflection, ResolvedWater)]
+#[require(
+    Transform,
+    Visibility,
+    WaterOptics,
+    WaterWaves,
+    WaterSurface,
+    WaterReflection,
+    WaterFoam,
+    WaterInteraction,
+    ResolvedWater,
+    FieldWindow,
+    FieldPictures,
+    Deposits
+)]
 pub struct Water {
     /// Length along local x and z, m, > 0, at most [`Water::MAX_SIZE`]. Default 100 × 100.
     ///

@@ -13,3 +13,6 @@
 @group(#{MATERIAL_BIND_GROUP}) @binding(7) var detail_sampler: sampler;
 @group(#{MATERIAL_BIND_GROUP}) @binding(8) var bed: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(9) var flow: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(10) var field_rings: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(11) var field_sampler: sampler;
+@group(#{MATERIAL_BIND_GROUP}) @binding(12) var field_matter: texture_2d<f32>;

@@ -54,6 +54,13 @@ pub(crate) struct GpuSurface {
     pub mirror_clip_from_world: Mat4,
     pub sky_from_world: Mat3,
     pub sky_tint: Vec3,
+
+    pub field_origin: Vec2,
+    pub field_scale: Vec2,
+
+    pub foam_albedo: Vec3,
+    pub foam_amount: f32,
+    pub foam_scale: f32,
 }
 
 impl GpuSurface {
@@ -62,6 +69,7 @@ impl GpuSurface {
     pub const FLOW: u32 = 4;
     pub const FOG: u32 = 8;
     pub const SUNLIGHT: u32 = 16;
+    pub const FIELD: u32 = 32;
 }
 
 #[cfg(test)]
@@ -84,6 +92,7 @@ mod tests {
             ("FLOW", GpuSurface::FLOW),
             ("FOG", GpuSurface::FOG),
             ("SUNLIGHT", GpuSurface::SUNLIGHT),
+            ("FIELD", GpuSurface::FIELD),
         ];
         for (name, value) in flags {
             assert!(WGSL.contains(&format!("const FLAG_{name}: u32 = {value}u;")), "{name}");

@@ -13,6 +13,7 @@
 
 struct Light {
     glitter: vec3<f32>,  // reflected radiance, as drawn
+    above: vec3<f32>,    // irradiance on the surface / π, as drawn
     below: vec3<f32>,    // irradiance below the surface / π, as drawn
     sun_path: f32,       // way of the strongest light per metre of depth
 }
@@ -33,7 +34,8 @@ fn glitter(normal: vec3<f32>, to_eye: vec3<f32>, to_light: vec3<f32>, variance: 
 
 // The lights at `position` for a surface of `normal` whose unresolved slopes have `variance`.
 fn lights(position: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, variance: f32, pixel: vec2<f32>) -> Light {
-    var result = Light(vec3(0.0), sky_irradiance() + view_bindings::lights.ambient_color.rgb * view.exposure, 1.2);
+    let diffuse = sky_irradiance() + view_bindings::lights.ambient_color.rgb * view.exposure;
+    var result = Light(vec3(0.0), diffuse, diffuse, 1.2);
     var strongest = 0.0;
     let view_z = (view.view_from_world * vec4(position, 1.0)).z;
     for (var i = 0u; i < view_bindings::lights.n_directional_lights; i++) {
@@ -48,6 +50,7 @@ fn lights(position: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, variance: f
         }
         let irradiance = light.color.rgb * (shadow * view.exposure);
         result.glitter += irradiance * glitter(normal, to_eye, to_light, variance);
+        result.above += irradiance * max(dot(normal, to_light), 0.0) / 3.14159265;
         let entering = irradiance * (to_light.y * (1.0 - optics::fresnel_exact(to_light.y, surface.index)));
         result.below += entering / 3.14159265;
         if max(light.color.r, light.color.g) > strongest {

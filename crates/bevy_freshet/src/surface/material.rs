@@ -32,12 +32,18 @@ pub(crate) struct SurfaceMaterial {
     pub bed: Option<Handle<Image>>,
     #[texture(9, sample_type = "float", filterable = false)]
     pub flow: Option<Handle<Image>>,
+    #[texture(10)]
+    #[sampler(11)]
+    pub field_rings: Option<Handle<Image>>,
+    #[texture(12)]
+    pub field_matter: Option<Handle<Image>>,
 }
 
 impl SurfaceMaterial {
     /// Whether one of `images` is among the textures.
     pub fn uses(&self, images: &[AssetId<Image>]) -> bool {
-        let textures = [&self.mirror, &self.sky, &self.sky_light, &self.bed, &self.flow];
+        let textures =
+            [&self.mirror, &self.sky, &self.sky_light, &self.bed, &self.flow, &self.field_rings, &self.field_matter];
         textures.into_iter().flatten().any(|texture| images.contains(&texture.id()))
     }
 }

@@ -96,6 +96,8 @@ impl Plugin for SurfacePlugin {
         load_shader_library!(app, "types.wgsl");
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "ground.wgsl");
+        load_shader_library!(app, "field.wgsl");
+        load_shader_library!(app, "foam.wgsl");
         load_shader_library!(app, "waves.wgsl");
         load_shader_library!(app, "detail.wgsl");
         load_shader_library!(app, "optics.wgsl");
@@ -112,6 +114,7 @@ impl Plugin for SurfacePlugin {
                 PostUpdate,
                 WaterSystems::Present
                     .after(WaterSystems::Resolve)
+                    .after(WaterSystems::Displace)
                     .after(TransformSystems::Propagate)
                     .after(VisibilitySystems::VisibilityPropagate)
                     .before(CameraUpdateSystems)

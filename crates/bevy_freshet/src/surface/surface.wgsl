@@ -2,6 +2,8 @@
 #import bevy_pbr::mesh_view_bindings::view
 #import freshet::surface::bindings::surface
 #import freshet::surface::detail
+#import freshet::surface::field
+#import freshet::surface::foam
 #import freshet::surface::ground
 #import freshet::surface::light
 #import freshet::surface::mirror
@@ -49,12 +51,12 @@ struct Facet {
     hidden: f32,        // slope variance that a pixel hides
 }
 
-fn facet(rest: vec2<f32>, depth: f32) -> Facet {
+fn facet(rest: vec2<f32>, depth: f32, rings: vec2<f32>) -> Facet {
     let footprint = detail::Footprint(dpdx(rest), dpdy(rest));
     let spacing = max(length(footprint.x), length(footprint.y));
     let swell = waves::slope(rest, waves::shallow_fade(depth), spacing);
     let ripples = detail::slope(rest, depth, footprint);
-    let slope = surface.world_from_local * (swell.slope + ripples.slope);
+    let slope = surface.world_from_local * (swell.slope + ripples.slope + rings);
     return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance);
 }
 
@@ -66,7 +68,8 @@ fn normal_of(slope: vec2<f32>) -> vec3<f32> {
 fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(0) vec4<f32> {
     let pixel = in.position.xy;
     let still_depth = ground::still_depth(in.rest);
-    let facet = facet(in.rest, still_depth);
+    let field = field::at(in.rest);
+    let facet = facet(in.rest, still_depth, field.slope);
     let normal = normal_of(facet.slope);
     let to_eye = scene::direction_to_eye(in.world);
     let behind = scene::behind(pixel);
@@ -92,6 +95,7 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
         color += lit.glitter * surface.reflectivity;
     }
     color = mix(color, surface.dull_color * lit.below, surface.dullness);
+    color = mix(color, foam::color(lit.above), foam::cover(in.rest, field.foam));
     if (surface.flags & types::FLAG_FOG) != 0u {
         color = scene::with_fog(color, fog);
     }

@@ -207,6 +207,8 @@ pub(crate) fn sync_surfaces(
                 detail: assets.detail.clone(),
                 bed: None,
                 flow: None,
+                field_rings: None,
+                field_matter: None,
             })),
             // Placed and shown from the next frame on, when it is written for the first time.
             Visibility::Hidden,

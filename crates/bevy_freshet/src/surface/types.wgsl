@@ -51,6 +51,13 @@ struct Surface {
     mirror_clip_from_world: mat4x4<f32>,
     sky_from_world: mat3x3<f32>,
     sky_tint: vec3<f32>,            // factor that makes the sky's texels radiance as drawn
+
+    field_origin: vec2<f32>,        // north-west corner of the simulated window, local xz, units: m
+    field_scale: vec2<f32>,         // windows per metre
+
+    foam_albedo: vec3<f32>,
+    foam_amount: f32,
+    foam_scale: f32,                // patterns per metre
 }
 
 const FLAG_MIRROR: u32 = 1u;
@@ -58,6 +65,7 @@ const FLAG_BED: u32 = 2u;
 const FLAG_FLOW: u32 = 4u;
 const FLAG_FOG: u32 = 8u;
 const FLAG_SUNLIGHT: u32 = 16u;
+const FLAG_FIELD: u32 = 32u;
 
 const VIEW_WATER: u32 = 0u;
 const VIEW_REFLECTION: u32 = 1u;

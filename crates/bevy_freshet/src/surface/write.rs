@@ -8,9 +8,10 @@ use super::{
     viewer::{ViewerData, Viewers},
 };
 use crate::{
-    body::{Fresnel, ResolvedWater, WaterFlow, WaterOptics},
+    body::{Fresnel, ResolvedWater, WaterFlow, WaterFoam, WaterOptics},
     reflection::{MirrorKey, Mirrors, WaterReflection},
     report::Reported,
+    simulation::{FieldPictures, FieldWindow},
 };
 use bevy::{
     asset::RenderAssetUsages,
@@ -33,6 +34,7 @@ type Waters<'w, 's> = Query<
         &'static Ripples,
         &'static WaterOptics,
         &'static WaterReflection,
+        (&'static WaterFoam, &'static FieldWindow, &'static FieldPictures),
     ),
 >;
 
@@ -58,7 +60,7 @@ pub(super) fn write_surfaces(
     let plain_sky = plain_sky.get_or_insert_with(|| images.add(white_cube())).clone();
     for (surface, shape, material_handle) in &surfaces {
         let (Ok(water), Some(viewer)) = (waters.get(surface.water), viewers.get(surface.viewer)) else { continue };
-        let (entity, resolved, settings, ripples, optics, reflection) = water;
+        let (entity, resolved, settings, ripples, optics, reflection, (foam, window, pictures)) = water;
         let mut gpu = GpuSurface::default();
         let mut textures = Textures::default();
         write_frame(&mut gpu, resolved, shape, &viewer);
@@ -66,6 +68,8 @@ pub(super) fn write_surfaces(
         write_detail(&mut gpu, entity, settings, ripples, &mut reported);
         write_ground(&mut gpu, &mut textures, resolved, &mut ground, &mut images);
         write_mirror(&mut gpu, &mut textures, entity, reflection, resolved, &viewer, &mirrors, &mut reported);
+        write_field(&mut gpu, window, pictures);
+        write_foam(&mut gpu, entity, foam, &mut reported);
         write_sky(&mut gpu, &mut textures, &viewer, &clear_color, &plain_sky, &assets);
 
         let Some(material) = materials.get(material_handle) else { continue };
@@ -75,6 +79,8 @@ pub(super) fn write_surfaces(
             sky_light: textures.sky_light,
             bed: textures.bed,
             flow: textures.flow,
+            field_rings: pictures.rings.clone(),
+            field_matter: pictures.matter.clone(),
             ..material.clone()
         };
         if let Some(mut buffer) = buffers.get_mut(&wanted.surface) {
@@ -209,6 +215,23 @@ fn write_mirror(
         gpu.mirror_clip_from_world = clip_from_world;
         textures.mirror = Some(mirror.image.clone());
     }
+}
+
+fn write_field(gpu: &mut GpuSurface, window: &FieldWindow, pictures: &FieldPictures) {
+    if pictures.rings.is_some() && pictures.matter.is_some() && window.size != UVec2::ZERO {
+        gpu.flags |= GpuSurface::FIELD;
+        gpu.field_origin = window.origin();
+        gpu.field_scale = window.extent().recip();
+    }
+}
+
+fn write_foam(gpu: &mut GpuSurface, entity: Entity, foam: &WaterFoam, reported: &mut Reported) {
+    let usable = WaterFoam::default();
+    gpu.foam_amount = reported.clamp(entity, "WaterFoam::amount", foam.amount, 0.0..=1.0, usable.amount);
+    let size = reported.clamp(entity, "WaterFoam::pattern_size", foam.pattern_size, 0.05..=100.0, usable.pattern_size);
+    gpu.foam_scale = size.recip();
+    let (albedo, fallback) = (foam.albedo.to_vec3(), usable.albedo.to_vec3());
+    gpu.foam_albedo = reported.clamp3(entity, "WaterFoam::albedo", albedo, 0.0..=1.0, fallback);
 }
 
 /// What is reflected where nothing is mirrored: the camera's environment map, else its skybox, else its clear colour.
