@@ -1,12 +1,7 @@
 //! The tile of fine ripples.
-use bevy::{
-    asset::RenderAssetUsages,
-    image::{ImageAddressMode, ImageSampler, ImageSamplerDescriptor},
-    prelude::*,
-    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
-};
+use super::tile;
+use bevy::{prelude::*, render::render_resource::TextureFormat};
 use core::f32::consts::TAU;
-use half::f16;
 
 /// Texels along one side of the tile.
 const SIZE: usize = 256;
@@ -16,32 +11,9 @@ const SHORTEST: f32 = 4.0;
 const TRAINS: usize = 160;
 
 /// Slopes of a random sea that tiles: red and green ∂h/∂x and ∂h/∂z with a mean square slope of 1 together, blue the mean
-/// square slope. Each mip level holds the means of the one above it, so that mean square minus square of the mean is
-/// the slope variance that a level hides.
+/// square slope.
 pub(super) fn detail_tile() -> Image {
-    let mut level = slopes();
-    let mut data = Vec::new();
-    let mut size = SIZE;
-    loop {
-        data.extend(level.iter().flat_map(|texel| texel.map(|c| f16::from_f32(c).to_le_bytes())).flatten());
-        if size == 1 {
-            break;
-        }
-        level = halved(&level, size);
-        size /= 2;
-    }
-    let extent = Extent3d { width: SIZE as u32, height: SIZE as u32, depth_or_array_layers: 1 };
-    let mut image =
-        Image::new_uninit(extent, TextureDimension::D2, TextureFormat::Rgba16Float, RenderAssetUsages::RENDER_WORLD);
-    image.texture_descriptor.label = Some("water_detail");
-    image.texture_descriptor.mip_level_count = SIZE.ilog2() + 1;
-    image.data = Some(data);
-    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
-        address_mode_u: ImageAddressMode::Repeat,
-        address_mode_v: ImageAddressMode::Repeat,
-        ..ImageSamplerDescriptor::linear()
-    });
-    image
+    tile::repeating("water_detail", TextureFormat::Rgba16Float, SIZE, slopes())
 }
 
 /// A sum of sines whose wave vectors fit the tile, with directions all around and equal slope per octave.
@@ -68,16 +40,6 @@ fn slopes() -> Vec<[f32; 4]> {
     sum.iter().map(|s| *s * factor).map(|s| [s.x, s.y, s.length_squared(), 1.0]).collect()
 }
 
-fn halved(level: &[[f32; 4]], size: usize) -> Vec<[f32; 4]> {
-    let half = size / 2;
-    let texel = |x: usize, z: usize| Vec4::from_array(level[z * size + x]);
-    (0..half * half)
-        .map(|i| (2 * (i % half), 2 * (i / half)))
-        .map(|(x, z)| (texel(x, z) + texel(x + 1, z) + texel(x, z + 1) + texel(x + 1, z + 1)) * 0.25)
-        .map(|mean| mean.to_array())
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -89,7 +51,7 @@ mod tests {
         while size > 1 {
             let mean_square = level.iter().map(|t| t[2]).sum::<f32>() / level.len() as f32;
             assert!((mean_square - 1.0).abs() < 1e-3, "{mean_square} at {size}");
-            level = halved(&level, size);
+            level = tile::halved(&level, size);
             size /= 2;
         }
         // Seen from afar the water is level, and all its slope has become variance.

@@ -37,6 +37,8 @@ pub(crate) struct SurfaceMaterial {
     pub field_rings: Option<Handle<Image>>,
     #[texture(12)]
     pub field_matter: Option<Handle<Image>>,
+    #[texture(13)]
+    pub foam: Handle<Image>,
 }
 
 impl SurfaceMaterial {

@@ -4,11 +4,13 @@
 //! after the opaque scene, of which it reads colour and depth, and before anything transparent. Cameras therefore get
 //! a `DepthPrepass`.
 mod detail;
+mod foam;
 mod gpu;
 mod material;
 mod mesh;
 mod ripples;
 mod sync;
+mod tile;
 mod viewer;
 mod write;
 
@@ -96,6 +98,7 @@ impl Plugin for SurfacePlugin {
         load_shader_library!(app, "types.wgsl");
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "ground.wgsl");
+        load_shader_library!(app, "flow.wgsl");
         load_shader_library!(app, "field.wgsl");
         load_shader_library!(app, "foam.wgsl");
         load_shader_library!(app, "waves.wgsl");

@@ -33,9 +33,12 @@ fn reflectance(cos_incidence: f32) -> f32 {
     return clamp(share, 0.0, 1.0);
 }
 
+// Absorption of what is dissolved at the fragment's place, 1/m.
+var<private> dye: vec3<f32>;
+
 // Extinction of a beam, 1/m: light scattered forward is counted as unscattered.
 fn extinction() -> vec3<f32> {
-    return surface.absorption + surface.backscatter;
+    return surface.absorption + dye + surface.backscatter;
 }
 
 // Beer–Lambert.

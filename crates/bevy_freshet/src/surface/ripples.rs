@@ -25,6 +25,8 @@ pub(crate) struct Ripples {
     pub cycle: f32,
     /// Where in that period the drift is, 0…1.
     pub phase: f64,
+    /// Way of the uniform part of the current, m.
+    pub carried: DVec2,
 }
 
 /// Lets every water's ripples travel: with the phase speed of their mean wavelength, the layers at an angle to each
@@ -50,6 +52,7 @@ pub(crate) fn advance_ripples(
         for (shift, moved) in ripples.shifts.iter_mut().zip(tiles) {
             *shift = (*shift + moved).fract_gl();
         }
+        ripples.carried += water.drift.as_dvec2() * step;
         ripples.size = size;
         // The fastest water drifts by a fixed share of a tile in a cycle: nothing is stretched far.
         let fastest = water.flow.as_ref().map_or(0.0, |(map, scale)| ground.fastest(map) * scale.abs());

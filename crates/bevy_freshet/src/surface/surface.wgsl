@@ -3,6 +3,7 @@
 #import freshet::surface::bindings::surface
 #import freshet::surface::detail
 #import freshet::surface::field
+#import freshet::surface::flow
 #import freshet::surface::foam
 #import freshet::surface::ground
 #import freshet::surface::light
@@ -51,11 +52,10 @@ struct Facet {
     hidden: f32,        // slope variance that a pixel hides
 }
 
-fn facet(rest: vec2<f32>, depth: f32, rings: vec2<f32>) -> Facet {
-    let footprint = detail::Footprint(dpdx(rest), dpdy(rest));
+fn facet(rest: vec2<f32>, depth: f32, drift: flow::Drift, footprint: flow::Footprint, rings: vec2<f32>) -> Facet {
     let spacing = max(length(footprint.x), length(footprint.y));
     let swell = waves::slope(rest, waves::shallow_fade(depth), spacing);
-    let ripples = detail::slope(rest, depth, footprint);
+    let ripples = detail::slope(drift, footprint);
     let slope = surface.world_from_local * (swell.slope + ripples.slope + rings);
     return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance);
 }
@@ -69,9 +69,12 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
     let pixel = in.position.xy;
     let still_depth = ground::still_depth(in.rest);
     let field = field::at(in.rest);
-    let facet = facet(in.rest, still_depth, field.slope);
+    let footprint = flow::Footprint(dpdx(in.rest), dpdy(in.rest));
+    let drift = flow::drift(in.rest, still_depth);
+    let facet = facet(in.rest, still_depth, drift, footprint, field.slope);
     let normal = normal_of(facet.slope);
     let to_eye = scene::direction_to_eye(in.world);
+    optics::dye = field.dye;
     let behind = scene::behind(pixel);
     // Where the bed has no data there is no water.
     if still_depth < NO_DATA_DEPTH {
@@ -95,7 +98,7 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
         color += lit.glitter * surface.reflectivity;
     }
     color = mix(color, surface.dull_color * lit.below, surface.dullness);
-    color = mix(color, foam::color(lit.above), foam::cover(in.rest, field.foam));
+    color = mix(color, foam::color(lit.above), foam::cover(drift, field.foam, footprint));
     if (surface.flags & types::FLAG_FOG) != 0u {
         color = scene::with_fog(color, fog);
     }

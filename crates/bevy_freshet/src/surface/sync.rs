@@ -2,6 +2,7 @@
 use super::{
     WaterSurface,
     detail::detail_tile,
+    foam::foam_tile,
     gpu::GpuSurface,
     material::SurfaceMaterial,
     mesh::{nested_grid, rings_for},
@@ -69,13 +70,15 @@ const SNAP_CELLS: f32 = 8.0;
 #[derive(Resource)]
 pub(crate) struct SurfaceAssets {
     detail: Handle<Image>,
+    foam: Handle<Image>,
     meshes: HashMap<(u32, u32, u32), Handle<Mesh>>,
 }
 
 impl FromWorld for SurfaceAssets {
     fn from_world(world: &mut World) -> Self {
-        let detail = world.resource_mut::<Assets<Image>>().add(detail_tile());
-        Self { detail, meshes: HashMap::default() }
+        let mut images = world.resource_mut::<Assets<Image>>();
+        let (detail, foam) = (images.add(detail_tile()), images.add(foam_tile()));
+        Self { detail, foam, meshes: HashMap::default() }
     }
 }
 
@@ -209,6 +212,7 @@ pub(crate) fn sync_surfaces(
                 flow: None,
                 field_rings: None,
                 field_matter: None,
+                foam: assets.foam.clone(),
             })),
             // Placed and shown from the next frame on, when it is written for the first time.
             Visibility::Hidden,

@@ -58,6 +58,7 @@ struct Surface {
     foam_albedo: vec3<f32>,
     foam_amount: f32,
     foam_scale: f32,                // patterns per metre
+    foam_drift: vec2<f32>,          // shift by the uniform current, patterns
 }
 
 const FLAG_MIRROR: u32 = 1u;

@@ -69,7 +69,7 @@ pub(super) fn write_surfaces(
         write_ground(&mut gpu, &mut textures, resolved, &mut ground, &mut images);
         write_mirror(&mut gpu, &mut textures, entity, reflection, resolved, &viewer, &mirrors, &mut reported);
         write_field(&mut gpu, window, pictures);
-        write_foam(&mut gpu, entity, foam, &mut reported);
+        write_foam(&mut gpu, entity, foam, ripples, &mut reported);
         write_sky(&mut gpu, &mut textures, &viewer, &clear_color, &plain_sky, &assets);
 
         let Some(material) = materials.get(material_handle) else { continue };
@@ -225,11 +225,12 @@ fn write_field(gpu: &mut GpuSurface, window: &FieldWindow, pictures: &FieldPictu
     }
 }
 
-fn write_foam(gpu: &mut GpuSurface, entity: Entity, foam: &WaterFoam, reported: &mut Reported) {
+fn write_foam(gpu: &mut GpuSurface, entity: Entity, foam: &WaterFoam, ripples: &Ripples, reported: &mut Reported) {
     let usable = WaterFoam::default();
     gpu.foam_amount = reported.clamp(entity, "WaterFoam::amount", foam.amount, 0.0..=1.0, usable.amount);
     let size = reported.clamp(entity, "WaterFoam::pattern_size", foam.pattern_size, 0.05..=100.0, usable.pattern_size);
     gpu.foam_scale = size.recip();
+    gpu.foam_drift = (ripples.carried / f64::from(size)).fract_gl().as_vec2();
     let (albedo, fallback) = (foam.albedo.to_vec3(), usable.albedo.to_vec3());
     gpu.foam_albedo = reported.clamp3(entity, "WaterFoam::albedo", albedo, 0.0..=1.0, fallback);
 }

@@ -1,0 +1,96 @@
+//! The tile of foam.
+use super::tile;
+use bevy::{prelude::*, render::render_resource::TextureFormat};
+use std::f32::consts::SQRT_2;
+
+/// Texels along one side of the tile.
+const SIZE: usize = 256;
+
+/// Cells of bubbles across the tile and the weight of each scale: froth is made of large and small bubbles.
+const SCALES: [(usize, f32); 3] = [(5, 1.0), (12, 0.7), (29, 0.4)];
+
+/// How soon foam covers a place, as a standard normal variate (red), and its square (green).
+///
+/// Where the variate is above `−Φ⁻¹(d)` there is foam of mean cover `d`: thin foam is a lace along the walls between
+/// bubbles, dense foam is closed but for their middles. A normal variate stays one when two layers are mixed with weights
+/// whose squares sum to one (Heitz and Neyret 2018), so the cover stays right while foam drifts.
+pub(super) fn foam_tile() -> Image {
+    let texels = normal(&froth()).into_iter().map(|variate| [variate, variate * variate]).collect();
+    tile::repeating("water_foam", TextureFormat::Rg16Float, SIZE, texels)
+}
+
+/// Nearness to the walls between bubbles, summed over scales.
+fn froth() -> Vec<f32> {
+    let mut random = fastrand::Rng::with_seed(0xF0A3);
+    let mut sum = vec![0.0; SIZE * SIZE];
+    for (cells, weight) in SCALES {
+        let centers: Vec<Vec2> = (0..cells * cells).map(|_| vec2(random.f32(), random.f32())).collect();
+        for (i, value) in sum.iter_mut().enumerate() {
+            let place = vec2((i % SIZE) as f32, (i / SIZE) as f32) * (cells as f32 / SIZE as f32);
+            *value -= weight * wall_distance(place, cells, &centers);
+        }
+    }
+    sum
+}
+
+/// Difference of the distances from `place` to the two nearest centres (Worley 1996), one centre in each of `cells`²
+/// cells that repeat; in cells.
+fn wall_distance(place: Vec2, cells: usize, centers: &[Vec2]) -> f32 {
+    let home = place.floor().as_ivec2();
+    let (mut nearest, mut second) = (f32::MAX, f32::MAX);
+    for z in -1..=1 {
+        for x in -1..=1 {
+            let cell = home + ivec2(x, z);
+            let wrapped = cell.rem_euclid(IVec2::splat(cells as i32));
+            let center = cell.as_vec2() + centers[wrapped.y as usize * cells + wrapped.x as usize];
+            let distance = place.distance_squared(center);
+            second = second.min(distance.max(nearest));
+            nearest = nearest.min(distance);
+        }
+    }
+    second.sqrt() - nearest.sqrt()
+}
+
+/// The values replaced by those of a standard normal distribution in the same order.
+fn normal(values: &[f32]) -> Vec<f32> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
+    let mut variates = vec![0.0; values.len()];
+    for (rank, index) in order.into_iter().enumerate() {
+        variates[index] = quantile((rank as f32 + 0.5) / values.len() as f32);
+    }
+    variates
+}
+
+/// Φ⁻¹, after Winitzki's (2008) approximation of the inverse error function: off by 0.004 at most.
+fn quantile(share: f32) -> f32 {
+    const A: f32 = 0.147;
+    let x = 2.0 * share - 1.0;
+    let log = (1.0 - x * x).ln();
+    let half = 2.0 / (std::f32::consts::PI * A) + 0.5 * log;
+    SQRT_2 * ((half * half - log / A).sqrt() - half).sqrt().copysign(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_variate_is_standard_normal() {
+        let variates = normal(&froth());
+        let count = variates.len() as f32;
+        let mean = variates.iter().sum::<f32>() / count;
+        let variance = variates.iter().map(|v| v * v).sum::<f32>() / count - mean * mean;
+        assert!(mean.abs() < 1e-3 && (variance - 1.0).abs() < 0.01, "{mean} {variance}");
+        let above = variates.iter().filter(|&&v| v > 1.2816).count() as f32 / count;
+        assert!((above - 0.1).abs() < 0.002, "{above}");
+    }
+
+    /// Thin foam lies along walls, the middle of a bubble is covered last.
+    #[test]
+    fn walls_come_before_middles() {
+        let centers = [vec2(0.5, 0.5); 9];
+        assert!(wall_distance(vec2(1.0, 1.5), 3, &centers) < 1e-6);
+        assert!((wall_distance(vec2(1.5, 1.5), 3, &centers) - 1.0).abs() < 1e-6);
+    }
+}
