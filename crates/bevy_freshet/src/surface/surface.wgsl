@@ -68,13 +68,13 @@ fn normal_of(slope: vec2<f32>) -> vec3<f32> {
 fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(0) vec4<f32> {
     let pixel = in.position.xy;
     let still_depth = ground::still_depth(in.rest);
-    let field = field::at(in.rest);
+    let fields = field::at(in.rest);
     let footprint = flow::Footprint(dpdx(in.rest), dpdy(in.rest));
     let drift = flow::drift(in.rest, still_depth);
-    let facet = facet(in.rest, still_depth, drift, footprint, field.slope);
+    let facet = facet(in.rest, still_depth, drift, footprint, fields.slope);
     let normal = normal_of(facet.slope);
     let to_eye = scene::direction_to_eye(in.world);
-    optics::dye = field.dye;
+    optics::dye = fields.dye;
     let behind = scene::behind(pixel);
     // Where the bed has no data there is no water.
     if still_depth < NO_DATA_DEPTH {
@@ -98,7 +98,7 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
         color += lit.glitter * surface.reflectivity;
     }
     color = mix(color, surface.dull_color * lit.below, surface.dullness);
-    color = mix(color, foam::color(lit.above), foam::cover(drift, field.foam, footprint));
+    color = mix(color, foam::color(lit.above), foam::cover(drift, fields.foam, footprint));
     if (surface.flags & types::FLAG_FOG) != 0u {
         color = scene::with_fog(color, fog);
     }
