@@ -138,11 +138,15 @@ impl Stage {
 
     /// Lets the clock run by `seconds` in steps of 1/60 s.
     pub fn run(&mut self, seconds: f64) {
-        let step = Duration::from_secs_f64(1.0 / 60.0);
-        self.app.insert_resource(TimeUpdateStrategy::ManualDuration(step));
         for _ in 0..(seconds * 60.0).round() as u32 {
-            self.app.update();
+            self.step(1.0 / 60.0);
         }
+    }
+
+    /// One frame of `seconds`.
+    pub fn step(&mut self, seconds: f64) {
+        self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(seconds)));
+        self.app.update();
         self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     }
 
