@@ -9,10 +9,13 @@ mod buoyancy;
 #[cfg(feature = "rapier")]
 mod endurance;
 mod glitter;
+mod light;
+mod night;
 mod optics;
 mod reflection;
 mod river;
 mod robustness;
 mod shore;
+mod star_filter;
 mod warnings;
 mod waves;
