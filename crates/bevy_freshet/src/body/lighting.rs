@@ -24,7 +24,7 @@ pub struct WaterLighting {
     pub highlight: f32,
     /// Share of the level surface's highlight in that, 0…1. Default 0.3, as in the source.
     pub flatness: f32,
-    /// Exponent of the waves' highlight, 1…10 000. Default 200. Higher is smaller.
+    /// Exponent of the waves' highlight, 1…10 000. Default 100. Higher is smaller.
     pub sharpness: f32,
     /// Exponent of the level surface's highlight, 1…10 000. Default 40.
     pub shininess: f32,
@@ -49,7 +49,7 @@ impl WaterLighting {
         wave_shadow: 0.2,
         highlight: 0.0,
         flatness: 0.3,
-        sharpness: 200.0,
+        sharpness: 100.0,
         shininess: 40.0,
         tinted_highlight: 0.0,
         tint: LinearRgba::rgb(0.98, 0.97, 0.7),

@@ -10,24 +10,41 @@
 
 const UP: vec3<f32> = vec3<f32>(0.0, 1.0, 0.0);
 
-// cosⁿθ ≈ exp(−n θ²/2) is a lobe of variance 1/n in each direction. Hidden slopes that widen it by `variance` in each
-// direction leave n' = n/(1 + n variance), and the same light, as the peak falls by n'/n.
-fn lobe(cosine: f32, exponent: f32, variance: f32) -> f32 {
-    let share = 1.0 / (1.0 + exponent * variance);
-    return share * pow(max(cosine, 1e-4), exponent * share);
+// cosⁿθ ≈ exp(−n θ²/2) is a lobe of variance 1/n in each direction. Hidden slopes that widen it by `variance` leave
+// n' = n/(1 + n variance) in that direction; dividing the peak by the widths keeps the light.
+fn narrowed(exponent: f32, variance: f32) -> f32 {
+    return 1.0 / (1.0 + exponent * variance);
 }
 
-// lerp((R·V)^sharpness, (R_flat·V)^shininess, flatness) [AT15]. A slope turns R by twice its angle: 4 · σ²/2.
+fn lobe(cosine: f32, exponent: f32) -> f32 {
+    return pow(max(cosine, 1e-4), exponent);
+}
+
+// (R·V)^n under hidden slopes. A slope turns R by twice its angle in the plane of L and V, by less across it: its variances
+// are 4 · σ²/2 and that times (H·V)².
+fn reflected_lobe(beam: Beam, place: Place, exponent: f32) -> f32 {
+    let reflected = reflect(-beam.to_light, place.normal);
+    let incline = dot(normalize(place.to_eye + beam.to_light), place.to_eye);
+    let along = narrowed(exponent, 2.0 * place.hidden);
+    let across = narrowed(exponent, 2.0 * place.hidden * incline * incline);
+    let normal_of_plane = cross(beam.to_light, place.to_eye);
+    let off = place.to_eye - reflected;
+    let aside = dot(off, normal_of_plane);
+    let share = aside * aside / max(dot(off, off) * dot(normal_of_plane, normal_of_plane), 1e-9);
+    return sqrt(along * across) * lobe(dot(reflected, place.to_eye), exponent * mix(along, across, share));
+}
+
+// lerp((R·V)^sharpness, (R_flat·V)^shininess, flatness) [AT15].
 fn bumped_highlight(beam: Beam, place: Place) -> f32 {
-    let bumped = lobe(dot(reflect(-beam.to_light, place.normal), place.to_eye), surface.sharpness, 2.0 * place.hidden);
-    let flat_ = lobe(dot(reflect(-beam.to_light, UP), place.to_eye), surface.shininess, 0.0);
-    return mix(bumped, flat_, surface.flatness);
+    let level = lobe(dot(reflect(-beam.to_light, UP), place.to_eye), surface.shininess);
+    return mix(reflected_lobe(beam, place, surface.sharpness), level, surface.flatness);
 }
 
-// (N·H)^n, tinted [M06]. A slope turns N by its angle: σ²/2.
+// (N·H)^n, tinted [M06]. A slope turns N by its angle in either direction: σ²/2.
 fn tinted_highlight(beam: Beam, place: Place) -> vec3<f32> {
     let half_way = normalize(place.to_eye + beam.to_light);
-    return surface.tint * lobe(dot(place.normal, half_way), surface.tint_exponent, 0.5 * place.hidden);
+    let share = narrowed(surface.tint_exponent, 0.5 * place.hidden);
+    return surface.tint * (share * lobe(dot(place.normal, half_way), surface.tint_exponent * share));
 }
 
 // Radiance that one light adds by the highlights above, and by shining through from behind or below: max(0, L·(−N)).
