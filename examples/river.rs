@@ -1,11 +1,13 @@
 //! A real river: checkered balls, crates, logs and a boat float down a meandering channel.
 //!
-//! `--camera` chooses from `bank`, `bend`, `drift`, `shallows`, `boat`, `above`, `sunset`.
+//! `--camera` chooses from `bank`, `bend`, `drift`, `shallows`, `boat`, `above`, `sunset`, `night`.
 #[path = "common/banks.rs"]
 mod banks;
 #[path = "common/bodies.rs"]
 mod bodies;
 mod common;
+#[path = "common/lantern.rs"]
+mod lantern;
 
 use bevy::{
     camera::Hdr,
@@ -17,7 +19,8 @@ use bevy::{
 use bevy_freshet::{
     buoyancy::{Buoyancy, ReturnTo},
     prelude::*,
-    sky::{Sky, SkyPlugin, SkyView},
+    sky::{Moon, Sky, SkyPlugin, SkyView},
+    star_filter::{StarFilter, StarFilterPlugin},
 };
 use bevy_rapier3d::prelude::*;
 use bodies::Bodies;
@@ -46,7 +49,10 @@ struct View {
 
 const AFTERNOON: (f32, f32) = (32.0, 215.0);
 
-const VIEWS: [View; 7] = [
+/// Elevation and azimuth of the full moon, while the sun is down; degrees.
+const MOON: (f32, f32) = (19.0, 252.0);
+
+const VIEWS: [View; 8] = [
     View { name: "bank", eye: vec3(-62.0, 2.2, 262.0), target: vec3(-20.0, 0.3, 250.0), sun: AFTERNOON },
     View { name: "bend", eye: vec3(-75.0, 7.5, 232.0), target: vec3(-30.0, -1.0, 262.0), sun: AFTERNOON },
     View { name: "drift", eye: vec3(-40.0, 0.9, 262.0), target: vec3(-18.0, 0.2, 252.0), sun: AFTERNOON },
@@ -54,6 +60,7 @@ const VIEWS: [View; 7] = [
     View { name: "boat", eye: vec3(-32.0, 2.4, 254.0), target: vec3(-23.0, 0.2, 252.0), sun: AFTERNOON },
     View { name: "above", eye: vec3(-30.0, 70.0, 320.0), target: vec3(-20.0, 0.0, 245.0), sun: AFTERNOON },
     View { name: "sunset", eye: vec3(-8.0, 2.0, 244.0), target: vec3(-50.0, 1.5, 261.0), sun: (7.0, 246.0) },
+    View { name: "night", eye: vec3(-8.0, 2.0, 244.0), target: vec3(-50.0, 2.2, 261.0), sun: (-40.0, 60.0) },
 ];
 
 fn main() -> Result<AppExit, Box<dyn std::error::Error>> {
@@ -73,6 +80,7 @@ fn main() -> Result<AppExit, Box<dyn std::error::Error>> {
         RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
         WaterPlugin,
         SkyPlugin,
+        StarFilterPlugin,
         FreeCameraPlugin,
     ))
     .insert_resource(TimestepMode::Fixed { dt: common::FRAME as f32, substeps: 1 })
@@ -155,8 +163,10 @@ fn light(mut commands: Commands, scene: Res<Scene>, canvas: Res<Canvas>) {
         first_cascade_far_bound: 22.0,
         ..default()
     };
-    commands.spawn((Sky::with_sun(scene.view.sun.0, scene.view.sun.1), cascades.build()));
-    commands.spawn((
+    let (elevation, azimuth) = scene.view.sun;
+    let moon = (elevation < 0.0).then(|| Moon::full(MOON.0, MOON.1));
+    commands.spawn((Sky { moon, ..Sky::with_sun(elevation, azimuth) }, cascades.build()));
+    let mut camera = commands.spawn((
         Camera3d::default(),
         (Hdr, Tonemapping::TonyMcMapface),
         SkyView { visibility: Some(2500.0), exposure: Some(0.3) },
@@ -165,6 +175,9 @@ fn light(mut commands: Commands, scene: Res<Scene>, canvas: Res<Canvas>) {
         Transform::from_translation(scene.view.eye + Vec3::Y * LEVEL)
             .looking_at(scene.view.target + Vec3::Y * LEVEL, Vec3::Y),
     ));
+    if elevation < 15.0 {
+        camera.insert(StarFilter::default());
+    }
 }
 
 /// The bodies, strewn along the stretch that the cameras see.
@@ -175,6 +188,7 @@ fn float(
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut images: ResMut<Assets<Image>>,
     options: Res<Options>,
+    scene: Res<Scene>,
 ) {
     let bodies = Bodies::new(&assets, &mut meshes, &mut materials, &mut images);
     // The middle of the channel from the start round the first bend.
@@ -189,7 +203,12 @@ fn float(
         bodies.spawn(&mut commands, i, Transform::from_xyz(place.x, LEVEL + 0.2, place.y).with_rotation(turn));
     }
     let moored = Transform::from_xyz(-24.0, LEVEL + 0.1, 253.0).with_rotation(Quat::from_rotation_y(-0.9));
-    bodies.spawn_boat(&mut commands, moored);
+    let boat = bodies.spawn_boat(&mut commands, moored);
+    if scene.view.sun.0 < 0.0 {
+        let mast = Transform::from_xyz(0.0, -0.1, -1.2);
+        let lantern = lantern::spawn_lantern(&mut commands, &mut meshes, &mut materials, mast, 1.5);
+        commands.entity(boat).add_child(lantern);
+    }
 }
 
 /// After the last frame: where each body is, how fast, and how deep in the water.

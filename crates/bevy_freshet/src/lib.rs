@@ -17,6 +17,7 @@ mod report;
 mod schedule;
 pub mod simulation;
 pub mod sky;
+pub mod star_filter;
 pub mod surface;
 
 pub use schedule::WaterSystems;
@@ -28,9 +29,10 @@ pub mod prelude {
     pub use crate::{
         WaterPlugin, WaterSystems,
         bed::BedShading,
-        body::{Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterInteraction, WaterOptics, WaterWaves},
+        body::{Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterInteraction, WaterLighting, WaterOptics, WaterWaves},
         query::{WaterQuery, WaterSample},
         reflection::WaterReflection,
+        star_filter::{StarFilter, StarFilterPlugin},
         surface::{NoWater, SurfaceView, WaterSurface},
     };
 }

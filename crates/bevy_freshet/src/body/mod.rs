@@ -3,6 +3,7 @@ mod bed;
 mod flow;
 mod foam;
 mod interaction;
+mod lighting;
 mod optics;
 mod resolved;
 mod waves;
@@ -11,6 +12,7 @@ pub use bed::{WaterBed, WaterBedError};
 pub use flow::WaterFlow;
 pub use foam::WaterFoam;
 pub use interaction::WaterInteraction;
+pub use lighting::WaterLighting;
 pub use optics::{Fresnel, WaterOptics};
 pub(crate) use resolved::ResolvedWater;
 pub use waves::{WaterWaves, Wave};
@@ -39,6 +41,7 @@ use bevy::{app::RunFixedMainLoopSystems, ecs::message::MessageUpdateSystems, pre
     WaterReflection,
     WaterFoam,
     WaterInteraction,
+    WaterLighting,
     ResolvedWater,
     FieldWindow,
     FieldPictures,

@@ -30,6 +30,13 @@ impl Cubemap {
         face_direction(face, uv).normalize()
     }
 
+    /// The texel that a world direction of any length but zero points into.
+    pub fn texel_towards(size: usize, direction: Vec3) -> usize {
+        let (face, uv) = face_from_direction(direction);
+        let cell = ((uv + 1.0) * 0.5 * size as f32).as_ivec2().clamp(IVec2::ZERO, IVec2::splat(size as i32 - 1));
+        (face * size + cell.y as usize) * size + cell.x as usize
+    }
+
     /// The solid angle of a texel, in steradians; those of all texels add up to 4π.
     ///
     /// Integral of 1 / (1 + u² + v²)^(3/2) over the texel, from the antiderivative atan(u v / √(1 + u² + v²)).
@@ -61,9 +68,7 @@ impl Cubemap {
             return self.texels[(face * self.size + y as usize) * self.size + x as usize];
         }
         let uv = (Vec2::new(x as f32, y as f32) + 0.5) * 2.0 / size as f32 - 1.0;
-        let (face, uv) = face_from_direction(face_direction(face, uv));
-        let cell = ((uv + 1.0) * 0.5 * size as f32).as_ivec2().clamp(IVec2::ZERO, IVec2::splat(size - 1));
-        self.texels[(face * self.size + cell.y as usize) * self.size + cell.x as usize]
+        self.texels[Self::texel_towards(self.size, face_direction(face, uv))]
     }
 
     /// The next smaller map, each texel the mean of four. The size must be even.
@@ -135,9 +140,7 @@ mod tests {
     fn a_direction_finds_its_own_texel() {
         let size = 8;
         for index in 0..6 * size * size {
-            let (face, uv) = face_from_direction(Cubemap::direction(size, index));
-            let cell = ((uv + 1.0) * 0.5 * size as f32).as_uvec2();
-            assert_eq!((face * size + cell.y as usize) * size + cell.x as usize, index);
+            assert_eq!(Cubemap::texel_towards(size, Cubemap::direction(size, index)), index);
         }
     }
 

@@ -1,11 +1,11 @@
-//! The whole sky as one picture: air, clouds and, where wanted, the solar disc.
+//! The whole sky under one light as one picture: air and clouds.
 
 use super::{
     Sky,
     clear::{ClearSky, smoothstep},
     clouds::{CloudLight, CloudTexel, Clouds},
     cubemap::{Cubemap, texels_from_fn},
-    sun::{self, SOLAR_RADIUS, luminance},
+    sun::{self, luminance},
 };
 use bevy::math::{FloatExt, Vec3, ops};
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -32,6 +32,12 @@ impl CloudMap {
         let texels = texels_from_fn(size, |_, direction| clouds.trace(direction, width));
         Self { size, clouds, texels }
     }
+
+    /// Share of the light from behind the clouds that a texel lets through.
+    pub fn clearness(&self, texel: usize) -> f32 {
+        let CloudTexel { opacity, veil, .. } = self.texels[texel];
+        (1.0 - opacity) * (1.0 - veil)
+    }
 }
 
 /// How far a cover (0…1) is from fair weather to a closed layer, 0…1.
@@ -44,12 +50,10 @@ pub(super) fn direct_share(cover: f32) -> f32 {
     1.0.lerp(0.02, overcast(cover))
 }
 
-/// Everything that lights a scene under one position of the sun.
+/// What air and clouds make of the sun in one position.
 pub(super) struct Dome {
-    /// Radiance of sky and ground without the solar disc, cd/m² per channel.
+    /// Radiance of sky and ground without disc and stars, cd/m² per channel.
     pub radiance: Cubemap,
-    /// Illuminance of a surface that faces the sun, lux per channel.
-    pub sun_illuminance: Vec3,
     clear: ClearSky,
     overcast: f32,
     light: CloudLight,
@@ -72,7 +76,6 @@ impl Dome {
         };
         let mut dome = Self {
             radiance: Cubemap { size: map.size, texels: Vec::new() },
-            sun_illuminance: clear.sun_illuminance * direct_share(sky.cloud_cover),
             clear,
             overcast: overcast(sky.cloud_cover),
             light,
@@ -98,36 +101,4 @@ impl Dome {
         let radiance = self.clear.radiance(direction);
         radiance.lerp(Vec3::splat(0.55 * luminance(radiance)), 0.9 * self.overcast)
     }
-
-    /// The sky with the solar disc, its edge smoothed over the texels it crosses, dimmed by the clouds before it.
-    pub fn with_disc(&self, map: &CloudMap) -> Cubemap {
-        let size = map.size;
-        let disc = sun::disc_radiance(self.sun_illuminance);
-        let reach = ops::cos(SOLAR_RADIUS + 2.0 / size as f32);
-        Cubemap::from_fn(size, |index, direction| {
-            let radiance = self.radiance.texels[index];
-            if direction.dot(self.clear.sun_direction) < reach {
-                return radiance;
-            }
-            let cloud = &map.texels[index];
-            let through = (1.0 - cloud.opacity) * (1.0 - cloud.veil);
-            radiance + disc * (through * disc_share(self.clear.sun_direction, direction, size))
-        })
-    }
-}
-
-/// The share of a texel that the disc covers, from 8 × 8 directions in it.
-fn disc_share(sun: Vec3, direction: Vec3, size: usize) -> f32 {
-    const SAMPLES: usize = 8;
-    // Faces are square to their axis: a step of a texel is longer across it than the angle it covers.
-    let axis = direction.abs().max_element();
-    let (right, up) = direction.any_orthonormal_pair();
-    let step = 2.0 / size as f32 * axis;
-    let offset = |i: usize| ((i as f32 + 0.5) / SAMPLES as f32 - 0.5) * step;
-    let inside = |i: usize, j: usize| {
-        let d = (direction + right * offset(i) + up * offset(j)).normalize();
-        d.dot(sun) > ops::cos(SOLAR_RADIUS)
-    };
-    let hits = (0..SAMPLES).flat_map(|i| (0..SAMPLES).map(move |j| (i, j))).filter(|(i, j)| inside(*i, *j)).count();
-    hits as f32 / (SAMPLES * SAMPLES) as f32
 }

@@ -2,9 +2,10 @@
 
 use super::{
     Sky,
-    clear::ClearSky,
-    dome::{self, CloudMap, Dome},
-    filter, image,
+    dome::CloudMap,
+    filter,
+    firmament::{Firmament, moon_illuminance, sun_illuminance},
+    image,
     sun::{self, luminance},
 };
 use crate::report::Reported;
@@ -21,7 +22,7 @@ use bevy::{
 };
 use std::f32::consts::{PI, TAU};
 
-/// The sun moves this far, in radians, before the sky is painted anew (0.06°, a quarter of a minute of real time).
+/// Sun or moon move this far, in radians, before the sky is painted anew (0.06°, a quarter of a minute of real time).
 const REPAINT_ANGLE: f32 = 0.001;
 
 /// Bearings for which the colour of the horizon is kept.
@@ -33,9 +34,9 @@ const BEARINGS: usize = 32;
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default, Debug, Clone)]
 pub struct SkyMaps {
-    /// Cube map of the sky as seen, with the solar disc; one level.
+    /// Cube map of the sky as seen, with the discs of sun and moon; one level.
     pub visible: Handle<Image>,
-    /// Cube map without the disc, blurred for one roughness per level: the `specular_map` of an environment light.
+    /// Cube map without the discs, blurred for one roughness per level: the `specular_map` of an environment light.
     pub specular: Handle<Image>,
     /// Cube map of irradiance / π: the `diffuse_map` of an environment light.
     pub diffuse: Handle<Image>,
@@ -43,6 +44,8 @@ pub struct SkyMaps {
     pub brightness: f32,
     /// Illuminance of a surface that faces the sun, by the sun alone, in lux per channel.
     pub sun_illuminance: Vec3,
+    /// Illuminance of a surface that faces the moon, by the moon alone, in lux per channel.
+    pub moon_illuminance: Vec3,
     /// Illuminance of level ground by the sky alone, in lux per channel.
     pub sky_illuminance: Vec3,
     /// Exposure value at ISO 100 with which a camera shows this light as one is used to see it.
@@ -92,20 +95,18 @@ pub(super) fn update_skies(
     }
 }
 
-/// Sets what the sky decides about its light, and nothing else of it.
+/// Sets what the sky decides about its light, and nothing else of it: it is the brighter one of sun and moon.
 fn shine(sky: &Sky, light: &mut DirectionalLight, transform: &mut Transform) {
-    let color = sun_illuminance(sky);
+    let (sun, moon) = (sun_illuminance(sky), moon_illuminance(sky));
+    let (color, direction) = match sky.moon {
+        Some(there) if luminance(moon) > luminance(sun) => (moon, there.direction()),
+        _ => (sun, sky.direction_to_sun()),
+    };
     light.illuminance = luminance(color);
     // The light's colour times its illuminance must be `color`.
     let unit = if light.illuminance > 0.0 { color / light.illuminance } else { Vec3::ONE };
     light.color = Color::LinearRgba(LinearRgba::rgb(unit.x, unit.y, unit.z));
-    transform.rotation = Transform::default().looking_to(-sky.direction_to_sun(), Vec3::Z).rotation;
-}
-
-/// Illuminance of a surface that faces the sun, in lux per channel, averaged over what the clouds let through.
-fn sun_illuminance(sky: &Sky) -> Vec3 {
-    let (elevation, cover) = (sky.sun_elevation, sky.cloud_cover);
-    sun::beam(elevation, sky.turbidity) * (sun::visible_share(elevation) * dome::direct_share(cover))
+    transform.rotation = Transform::default().looking_to(-direction, Vec3::Z).rotation;
 }
 
 /// What was painted last, and the parts that serve again.
@@ -120,21 +121,31 @@ impl Painter {
         let Some((painted, last)) = self.last else {
             return true;
         };
-        let moved = last.direction_to_sun().angle_between(sky.direction_to_sun()) > REPAINT_ANGLE;
-        let with_same_sun = Sky { sun_elevation: sky.sun_elevation, sun_azimuth: sky.sun_azimuth, ..last };
-        moved || painted != entity || with_same_sun != *sky
+        let has_moved = |from: Vec3, to: Vec3| from.angle_between(to) > REPAINT_ANGLE;
+        let moon_moved = match (last.moon, sky.moon) {
+            (Some(last), Some(moon)) => {
+                has_moved(last.direction(), moon.direction()) || (last.phase - moon.phase).abs() > REPAINT_ANGLE
+            }
+            (last, moon) => last != moon,
+        };
+        let moved = moon_moved || has_moved(last.direction_to_sun(), sky.direction_to_sun());
+        let elsewhere =
+            Sky { sun_elevation: sky.sun_elevation, sun_azimuth: sky.sun_azimuth, moon: sky.moon, ..last };
+        moved || painted != entity || elsewhere != *sky
     }
 
     fn paint(&mut self, entity: Entity, sky: &Sky, maps: &mut SkyMaps, images: &mut Assets<Image>) {
-        let clear = match ClearSky::new(sky.sun_elevation, sky.sun_azimuth, sky.turbidity, sky.ground_albedo) {
-            Ok(clear) => clear,
+        let clouds = self.clouds(sky);
+        let firmament = match Firmament::new(sky, clouds) {
+            Ok(firmament) => firmament,
             Err(reason) => return error!("the sky of entity {entity} cannot be painted: {reason}"),
         };
+        let visible = firmament.with_discs(sky, clouds);
         self.last = Some((entity, *sky));
-        let clouds = self.clouds(sky);
-        let dome = Dome::new(clear, clouds, sky);
-        let visible = dome.with_disc(clouds);
-        let half = filter::pyramid(dome.radiance.halved());
+        let half = filter::pyramid(firmament.radiance.halved());
+        let (sun, moon) = (sun_illuminance(sky), moon_illuminance(sky));
+        let direct = luminance(sun) * sky.sun_elevation.sin().max(0.0)
+            + luminance(moon) * sky.moon.map_or(0.0, |moon| moon.elevation.sin().max(0.0));
 
         let sky_illuminance = half[0].integrate(|d| d.y.max(0.0));
         let brightness = (luminance(sky_illuminance) / PI).max(1e-6);
@@ -152,13 +163,11 @@ impl Painter {
                 image::cube_image("sky_diffuse", &[filter::diffuse(&half)], scale),
             ),
             brightness,
-            sun_illuminance: dome.sun_illuminance,
+            sun_illuminance: sun,
+            moon_illuminance: moon,
             sky_illuminance,
-            ev100: exposure_value(
-                luminance(sky_illuminance),
-                luminance(dome.sun_illuminance) * sky.sun_elevation.sin().max(0.0),
-            ),
-            horizon: (0..BEARINGS).map(|b| dome.air(sun::direction(0.005, bearing_angle(b)))).collect(),
+            ev100: exposure_value(luminance(sky_illuminance), direct),
+            horizon: (0..BEARINGS).map(|b| firmament.air(sun::direction(0.005, bearing_angle(b)))).collect(),
         };
     }
 
@@ -181,13 +190,13 @@ fn replaced(images: &mut Assets<Image>, handle: &Handle<Image>, image: Image) ->
     handle.clone()
 }
 
-/// Exposure value for a scene on level ground under `sky` and `sun` lux.
+/// Exposure value for a scene on level ground under `sky` lux and `direct` lux of sun and moon.
 ///
 /// Metered as ISO 2720 does incident light, EV = log₂(E / 3.3 lx), but never so long that the sky, of mean luminance L,
 /// comes out more than 1.7 stops above middle grey, EV = log₂(8 L) − 1.7: that is what keeps a low sun golden. In the dark
 /// a picture is left darker than by day, as it is seen: by a quarter of a stop for each stop below 100 lx, four at most.
-fn exposure_value(sky: f32, sun: f32) -> f32 {
-    let ground = (sky + sun).max(1e-4);
+fn exposure_value(sky: f32, direct: f32) -> f32 {
+    let ground = (sky + direct).max(1e-4);
     let incident = ops::log2(ground / 3.3);
     let reflected = ops::log2(8.0 * sky.max(1e-4) / PI) - 1.7;
     let dark = ops::log2(100.0 / ground).max(0.0);

@@ -67,8 +67,13 @@ pub(super) fn henyey_greenstein(g: f32, cosine: f32) -> f32 {
 /// Illuminance per linear sRGB channel, in lux, on a surface that faces the sun: its luminance-weighted sum is the
 /// illuminance in the usual sense. It does not yet ask how much of the disc is above the horizon.
 pub(super) fn beam(elevation: f32, turbidity: f32) -> Vec3 {
+    SOLAR_ILLUMINANCE * SOLAR_COLOR * transmittance(elevation, turbidity)
+}
+
+/// Share of the light from beyond the atmosphere that reaches the ground, per linear sRGB channel.
+pub(super) fn transmittance(elevation: f32, turbidity: f32) -> Vec3 {
     let depth = optical_depth(turbidity) * -air_mass(elevation);
-    SOLAR_ILLUMINANCE * SOLAR_COLOR * Vec3::from_array(depth.to_array().map(ops::exp))
+    Vec3::from_array(depth.to_array().map(ops::exp))
 }
 
 /// The share of the solar disc above the horizon, 0…1: the area of a circle beyond a chord.

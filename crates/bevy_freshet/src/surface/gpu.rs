@@ -62,6 +62,17 @@ pub(crate) struct GpuSurface {
     pub foam_amount: f32,
     pub foam_scale: f32,
     pub foam_drift: Vec2,
+
+    // Stylised light.
+    pub tint: Vec3,
+    pub tint_exponent: f32,
+    pub translucent_color: Vec3,
+    pub diffuse: f32,
+    pub wave_shadow: f32,
+    pub highlight: f32,
+    pub flatness: f32,
+    pub sharpness: f32,
+    pub shininess: f32,
 }
 
 impl GpuSurface {

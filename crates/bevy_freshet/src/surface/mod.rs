@@ -46,7 +46,7 @@ pub struct WaterSurface {
     /// Slope variance of what is too small for any texture, 0.0001…0.5: how much the sun's glitter spreads. Default
     /// 0.002.
     pub roughness: f32,
-    /// Whether sun and moon glitter on the surface. Default true.
+    /// Whether sun, moon and lamps glitter on the surface. Default true.
     pub sunlight: bool,
     /// What is drawn. Default [`SurfaceView::Water`].
     pub view: SurfaceView,
@@ -106,6 +106,9 @@ impl Plugin for SurfacePlugin {
         load_shader_library!(app, "optics.wgsl");
         load_shader_library!(app, "scene.wgsl");
         load_shader_library!(app, "mirror.wgsl");
+        load_shader_library!(app, "beam.wgsl");
+        load_shader_library!(app, "lamps.wgsl");
+        load_shader_library!(app, "stylised.wgsl");
         load_shader_library!(app, "light.wgsl");
         load_shader_library!(app, "refraction.wgsl");
         embedded_asset!(app, "surface.wgsl");

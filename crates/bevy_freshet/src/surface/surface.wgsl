@@ -1,5 +1,6 @@
 // The water surface: displaced, and coloured by what it reflects, lets through and scatters.
 #import bevy_pbr::mesh_view_bindings::view
+#import freshet::surface::beam::Place
 #import freshet::surface::bindings::surface
 #import freshet::surface::detail
 #import freshet::surface::field
@@ -89,11 +90,11 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
     let cos_eye = max(dot(normal, to_eye), 0.02);
     let share = optics::reflectance(cos_eye) * surface.reflectivity;
 
-    let lit = light::lights(in.world, normal, to_eye, facet.hidden + surface.roughness, pixel);
+    let lit = light::lights(Place(in.world, normal, to_eye, facet.hidden, pixel));
     let reflection = reflection(in.world, facet, to_eye, fog);
     let below = refraction::refracted(in.world, in.position, normal, to_eye, behind, lit);
 
-    var color = mix(below, reflection, share);
+    var color = mix(below, reflection, share) * lit.shade + lit.glow;
     if (surface.flags & types::FLAG_SUNLIGHT) != 0u {
         color += lit.glitter * surface.reflectivity;
     }
@@ -157,7 +158,7 @@ fn edge(depth: f32, behind_depth: f32) -> f32 {
 fn seen_from_below(in: Fragment, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let cos_eye = max(dot(-normal, to_eye), 0.02);
     let share = optics::fresnel_exact(cos_eye, 1.0 / surface.index) * surface.reflectivity;
-    let lit = light::lights(in.world, normal, to_eye, 1.0, in.position.xy);
+    let lit = light::lights(Place(in.world, normal, to_eye, 1.0, in.position.xy));
     return mix(scene::color_behind(in.position.xy), optics::scattered(lit.below, 1e3, 1e3, 1.0), share);
 }
 

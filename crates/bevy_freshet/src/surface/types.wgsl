@@ -59,6 +59,17 @@ struct Surface {
     foam_amount: f32,
     foam_scale: f32,                // patterns per metre
     foam_drift: vec2<f32>,          // shift by the uniform current, patterns
+
+    // Stylised light.
+    tint: vec3<f32>,                // strength times colour of the tinted highlight, units: 1/sr
+    tint_exponent: f32,
+    translucent_color: vec3<f32>,   // strength times colour
+    diffuse: f32,
+    wave_shadow: f32,
+    highlight: f32,                 // units: 1/sr
+    flatness: f32,
+    sharpness: f32,
+    shininess: f32,
 }
 
 const FLAG_MIRROR: u32 = 1u;

@@ -8,7 +8,7 @@ use super::{
     viewer::{ViewerData, Viewers},
 };
 use crate::{
-    body::{Fresnel, ResolvedWater, WaterFlow, WaterFoam, WaterOptics},
+    body::{Fresnel, ResolvedWater, WaterFlow, WaterFoam, WaterLighting, WaterOptics},
     reflection::{MirrorKey, Mirrors, WaterReflection},
     report::Reported,
     simulation::{FieldPictures, FieldWindow},
@@ -35,6 +35,7 @@ type Waters<'w, 's> = Query<
         &'static WaterOptics,
         &'static WaterReflection,
         (&'static WaterFoam, &'static FieldWindow, &'static FieldPictures),
+        &'static WaterLighting,
     ),
 >;
 
@@ -60,7 +61,7 @@ pub(super) fn write_surfaces(
     let plain_sky = plain_sky.get_or_insert_with(|| images.add(white_cube())).clone();
     for (surface, shape, material_handle) in &surfaces {
         let (Ok(water), Some(viewer)) = (waters.get(surface.water), viewers.get(surface.viewer)) else { continue };
-        let (entity, resolved, settings, ripples, optics, reflection, (foam, window, pictures)) = water;
+        let (entity, resolved, settings, ripples, optics, reflection, (foam, window, pictures), lighting) = water;
         let mut gpu = GpuSurface::default();
         let mut textures = Textures::default();
         write_frame(&mut gpu, resolved, shape, &viewer);
@@ -70,6 +71,7 @@ pub(super) fn write_surfaces(
         write_mirror(&mut gpu, &mut textures, entity, reflection, resolved, &viewer, &mirrors, &mut reported);
         write_field(&mut gpu, window, pictures);
         write_foam(&mut gpu, entity, foam, ripples, &mut reported);
+        write_lighting(&mut gpu, entity, lighting, &mut reported);
         write_sky(&mut gpu, &mut textures, &viewer, &clear_color, &plain_sky, &assets);
 
         let Some(material) = materials.get(material_handle) else { continue };
@@ -233,6 +235,19 @@ fn write_foam(gpu: &mut GpuSurface, entity: Entity, foam: &WaterFoam, ripples: &
     gpu.foam_drift = (ripples.carried / f64::from(size)).fract_gl().as_vec2();
     let (albedo, fallback) = (foam.albedo.to_vec3(), usable.albedo.to_vec3());
     gpu.foam_albedo = reported.clamp3(entity, "WaterFoam::albedo", albedo, 0.0..=1.0, fallback);
+}
+
+fn write_lighting(gpu: &mut GpuSurface, entity: Entity, lighting: &WaterLighting, reported: &mut Reported) {
+    let lighting = lighting.usable(entity, reported);
+    gpu.diffuse = lighting.diffuse;
+    gpu.wave_shadow = lighting.wave_shadow;
+    gpu.highlight = lighting.highlight;
+    gpu.flatness = lighting.flatness;
+    gpu.sharpness = lighting.sharpness;
+    gpu.shininess = lighting.shininess;
+    gpu.tint = lighting.tinted_highlight * lighting.tint.to_vec3();
+    gpu.tint_exponent = lighting.tint_exponent;
+    gpu.translucent_color = lighting.translucence * lighting.translucent_color.to_vec3();
 }
 
 /// What is reflected where nothing is mirrored: the camera's environment map, else its skybox, else its clear colour.
