@@ -11,6 +11,7 @@ use bevy_rapier3d::prelude::*;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// Meshes and materials of the bodies, made once.
+#[derive(Resource)]
 pub struct Bodies {
     ball: Handle<Mesh>,
     cube: Handle<Mesh>,

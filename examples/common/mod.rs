@@ -40,7 +40,8 @@ pub struct Options {
     pub seed: u64,
 }
 
-fn size(text: &str) -> Result<UVec2, String> {
+/// A size in pixels as it is typed: `960x540`.
+pub fn size(text: &str) -> Result<UVec2, String> {
     let parse = || {
         let (width, height) = text.split_once('x')?;
         Some(uvec2(width.parse().ok()?, height.parse().ok()?))
@@ -110,12 +111,7 @@ fn wait_for_gpu(device: Res<RenderDevice>) {
 pub fn run(mut app: App) -> AppExit {
     let options = app.world().resource::<Options>().clone();
     let Some(out) = &options.out else { return app.run() };
-    while app.plugins_state() == PluginsState::Adding {
-        bevy::tasks::tick_global_task_pools_on_main_thread();
-    }
-    app.finish();
-    app.cleanup();
-    warm_up(&mut app);
+    start(&mut app);
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(FRAME)));
     let mut milliseconds: Vec<f64> = (0..options.frames)
         .map(|_| {
@@ -135,6 +131,16 @@ pub fn run(mut app: App) -> AppExit {
             AppExit::error()
         }
     }
+}
+
+/// Starts an app without a window, up to its first frame with everything loaded.
+pub fn start(app: &mut App) {
+    while app.plugins_state() == PluginsState::Adding {
+        bevy::tasks::tick_global_task_pools_on_main_thread();
+    }
+    app.finish();
+    app.cleanup();
+    warm_up(app);
 }
 
 /// Most frames to wait for assets and shaders.

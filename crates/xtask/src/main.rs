@@ -1,5 +1,6 @@
-//! The few commands a newcomer types: `cargo xtask setup`, `river`, `test` and `assets`.
+//! The few commands a newcomer types: `cargo xtask setup`, `river`, `test`, `bench` and `assets`.
 
+mod bench;
 mod command;
 mod river;
 mod setup;
@@ -32,6 +33,9 @@ enum Task {
     },
     /// Sets up, then checks everything: format, lints, documentation, tests
     Test,
+    /// Measures what things cost
+    #[command(subcommand)]
+    Bench(bench::Bench),
     /// Paints the textures in assets/textures anew
     Assets,
 }
@@ -45,6 +49,7 @@ fn main() -> Result<ExitCode> {
         }
         Task::River { args } => return river::run(args),
         Task::Test => test::run()?,
+        Task::Bench(bench) => return bench::run(bench),
         Task::Assets => textures::write_all()?,
     }
     Ok(ExitCode::SUCCESS)

@@ -129,8 +129,7 @@ impl Painter {
             (last, moon) => last != moon,
         };
         let moved = moon_moved || has_moved(last.direction_to_sun(), sky.direction_to_sun());
-        let elsewhere =
-            Sky { sun_elevation: sky.sun_elevation, sun_azimuth: sky.sun_azimuth, moon: sky.moon, ..last };
+        let elsewhere = Sky { sun_elevation: sky.sun_elevation, sun_azimuth: sky.sun_azimuth, moon: sky.moon, ..last };
         moved || painted != entity || elsewhere != *sky
     }
 
