@@ -14,5 +14,6 @@ mod reflection;
 mod river;
 mod robustness;
 mod shore;
+mod views;
 mod warnings;
 mod waves;

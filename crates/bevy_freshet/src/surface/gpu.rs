@@ -61,6 +61,10 @@ pub(crate) struct GpuSurface {
     pub foam_albedo: Vec3,
     pub foam_amount: f32,
     pub foam_scale: f32,
+
+    // For SurfaceView.
+    pub current_drift: Vec2,
+    pub current_scale: f32,
 }
 
 impl GpuSurface {
