@@ -109,6 +109,25 @@ impl Feature {
         }
     }
 
+    /// What it does, in a sentence.
+    pub const fn effect(self) -> &'static str {
+        match self {
+            Self::Reflection => "Sky and scene in the water; off, no mirror is drawn either.",
+            Self::Refraction => "Bending of what is seen through the surface.",
+            Self::Dispersion => "Different refraction per colour.",
+            Self::Fresnel => "Reflection that depends on the angle; off, half of the light is reflected everywhere.",
+            Self::Flow => "The current, drawn and felt.",
+            Self::Light => "Glitter of sun and moon.",
+            Self::Fog => "The camera's fog on the water.",
+            Self::Waves => "Waves, drawn and felt.",
+            Self::Ripples => "Fine ripples.",
+            Self::Edge => "The soft edge at the waterline.",
+            Self::Foam => "Foam.",
+            Self::Rings => "Rings around bodies.",
+            Self::Interaction => "All simulated fields: rings, foam and dye.",
+        }
+    }
+
     /// Whether the feature acts on a water. Without a water nothing does.
     pub fn is_on(self, water: EntityRef) -> bool {
         let Some(mut settings) = Settings::of(water) else { return false };

@@ -133,6 +133,12 @@ impl Preset {
             })
     }
 
+    /// The components of which there are settings.
+    #[cfg(test)]
+    pub(crate) fn components(&self) -> impl Iterator<Item = TypeId> {
+        [&self.water, &self.sky, &self.camera].into_iter().flatten().map(|part| part.component)
+    }
+
     /// What a file held that this version does not know, as `WaterOptics.colour`.
     pub fn ignored(&self) -> &[String] {
         &self.ignored
