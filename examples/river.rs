@@ -1,11 +1,16 @@
 //! A real river: checkered balls, crates, logs and a boat float down a meandering channel.
 //!
+//! With the feature `panel` every setting has a slider: F1 hides and shows them.
+//!
 //! `--camera` chooses from `bank`, `bend`, `drift`, `shallows`, `boat`, `above`, `sunset`.
 #[path = "common/banks.rs"]
 mod banks;
 #[path = "common/bodies.rs"]
 mod bodies;
 mod common;
+#[cfg(feature = "panel")]
+#[path = "common/river_panel.rs"]
+mod river_panel;
 
 use bevy::{
     camera::Hdr,
@@ -81,6 +86,8 @@ fn main() -> Result<AppExit, Box<dyn std::error::Error>> {
     if options.out.is_some() {
         app.add_systems(Last, print_table);
     }
+    #[cfg(feature = "panel")]
+    app.add_plugins(river_panel::plugin);
     Ok(common::run(app))
 }
 

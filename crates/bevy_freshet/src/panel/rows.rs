@@ -240,7 +240,7 @@ pub(super) fn draw_group(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel,
     if current(world, &registry, entity, (group.component)()).is_none() {
         return;
     }
-    egui::CollapsingHeader::new(group.title).show(ui, |ui| {
+    let header = egui::CollapsingHeader::new(group.title).show(ui, |ui| {
         for row in group.rows {
             draw_row(ui, world, panel, &registry, entity, group, row);
         }
@@ -248,6 +248,7 @@ pub(super) fn draw_group(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel,
             set_defaults(world, &registry, entity, group);
         }
     });
+    panel.note(ui, group.title, &header.header_response);
 }
 
 fn draw_row(

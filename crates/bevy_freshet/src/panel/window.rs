@@ -16,14 +16,6 @@ use bevy_egui::{
     egui::{self, ComboBox, Ui},
 };
 
-/// The entities whose settings are shown.
-#[derive(Clone, Copy)]
-struct Shown {
-    water: Option<Entity>,
-    sky: Option<Entity>,
-    camera: Entity,
-}
-
 /// Draws the panel and writes what is changed.
 pub(super) fn draw(world: &mut World) {
     let mut contexts = world.query_filtered::<(Entity, &mut EguiContext), With<PrimaryEguiContext>>();
@@ -48,9 +40,9 @@ pub(super) fn draw(world: &mut World) {
 fn contents(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, camera: Entity) {
     let water = choose_water(ui, world, panel);
     let sky = world.query_filtered::<Entity, With<Sky>>().iter(world).min();
-    let shown = Shown { water, sky, camera };
-    clock_and_actions(ui, world, panel, shown);
-    camera_choice(ui, world, shown);
+    let level = level(world, water);
+    clock_and_actions(ui, world, panel, camera, level);
+    camera_choice(ui, world, camera, level);
     if let Some(water) = water {
         view_choice(ui, world, panel, water);
         switches(ui, world, panel, water);
@@ -96,7 +88,7 @@ fn choose_water(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel) -> Optio
     Some(water)
 }
 
-fn clock_and_actions(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, shown: Shown) {
+fn clock_and_actions(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, camera: Entity, level: f32) {
     ui.horizontal(|ui| {
         let mut time = world.resource_mut::<Time<Virtual>>();
         let mut paused = time.is_paused();
@@ -114,8 +106,7 @@ fn clock_and_actions(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, sho
         let drop = ui.button("Drop a body").on_hover_text("Drops a body in front of the camera.");
         panel.note(ui, "Drop a body", &drop);
         if drop.clicked() {
-            let level = level(world, shown.water);
-            if let Some(camera) = world.get::<GlobalTransform>(shown.camera) {
+            if let Some(camera) = world.get::<GlobalTransform>(camera) {
                 let place = actions::place_before(camera, level);
                 world.write_message(DropRequested { place });
             }
@@ -129,9 +120,8 @@ fn level(world: &World, water: Option<Entity>) -> f32 {
 }
 
 /// Begins to orbit a camera that does not yet.
-fn camera_choice(ui: &mut Ui, world: &mut World, shown: Shown) {
-    let level = level(world, shown.water);
-    let Ok(mut camera) = world.get_entity_mut(shown.camera) else { return };
+fn camera_choice(ui: &mut Ui, world: &mut World, camera: Entity, level: f32) {
+    let Ok(mut camera) = world.get_entity_mut(camera) else { return };
     let mut orbits = camera.get::<OrbitCamera>().is_some_and(|orbit| orbit.enabled);
     let before = orbits;
     ui.checkbox(&mut orbits, "Orbit the camera")
@@ -167,7 +157,7 @@ fn view_choice(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, water: En
 
 fn switches(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, water: Entity) {
     let Ok(mut water) = world.get_entity_mut(water) else { return };
-    egui::CollapsingHeader::new("Switches").show(ui, |ui| {
+    let header = egui::CollapsingHeader::new("Switches").show(ui, |ui| {
         egui::Grid::new("switches").num_columns(3).show(ui, |ui| {
             for (i, feature) in Feature::ALL.into_iter().enumerate() {
                 let mut on = feature.is_on(water.as_readonly());
@@ -182,4 +172,5 @@ fn switches(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, water: Entit
             }
         });
     });
+    panel.note(ui, "Switches", &header.header_response);
 }
