@@ -100,9 +100,9 @@ impl Bench {
 
     /// The same scene with and without water; gives the share of the frame that is not water.
     fn table_of_the_water(&mut self) -> f64 {
-        let show = |visibility| move |world: &mut World, water| _ = world.entity_mut(water).insert(visibility);
+        let show = |visibility| move |world: &mut World, water: Entity| _ = world.entity_mut(water).insert(visibility);
         let still = |on: bool| {
-            move |world: &mut World, water| {
+            move |world: &mut World, water: Entity| {
                 Feature::Interaction.switch(on, &mut world.entity_mut(water));
                 Feature::Reflection.switch(on, &mut world.entity_mut(water));
             }
@@ -136,7 +136,7 @@ impl Bench {
             if !feature.is_on(self.app.world().entity(self.water)) {
                 continue;
             }
-            let switch = |on| move |world: &mut World, water| feature.switch(on, &mut world.entity_mut(water));
+            let switch = |on| move |world: &mut World, water: Entity| feature.switch(on, &mut world.entity_mut(water));
             let times = self.compare(switch(false), switch(true));
             Self::row(feature.name(), times, dry);
         }
@@ -148,7 +148,9 @@ impl Bench {
         let usual = self.app.world().get::<WaterSurface>(self.water).copied().unwrap_or_default();
         for cells in [12, 16, 32, 64, 128] {
             let set = |cells| {
-                move |world: &mut World, water| _ = world.entity_mut(water).insert(WaterSurface { cells, ..usual })
+                move |world: &mut World, water: Entity| {
+                    _ = world.entity_mut(water).insert(WaterSurface { cells, ..usual })
+                }
             };
             let times = self.compare(set(cells), set(usual.cells));
             Self::row(&format!("{cells}²"), times, dry);

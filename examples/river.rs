@@ -1,10 +1,15 @@
 //! A real river: checkered balls, crates, logs and a boat float down a meandering channel.
 //!
+//! With the feature `panel` every setting has a slider: F1 hides and shows them.
+//!
 //! `--camera` chooses from `bank`, `bend`, `drift`, `shallows`, `boat`, `above`, `bridge`, `noon`, `sunset`, `night`, `frost`
 //! and `ice`.
 mod common;
 #[path = "common/river.rs"]
 mod river;
+#[cfg(feature = "panel")]
+#[path = "common/river_panel.rs"]
+mod river_panel;
 
 use bevy::prelude::*;
 use bevy_freshet::prelude::*;
@@ -15,6 +20,8 @@ use common::Options;
 fn main() -> Result<AppExit, Box<dyn std::error::Error>> {
     let options = Options::parse();
     let mut app = river::app(&options)?;
+    #[cfg(feature = "panel")]
+    app.add_plugins(river_panel::plugin);
     if options.out.is_some() {
         app.add_systems(Last, print_table);
     }

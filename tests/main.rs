@@ -18,5 +18,6 @@ mod river;
 mod robustness;
 mod shore;
 mod star_filter;
+mod views;
 mod warnings;
 mod waves;

@@ -73,7 +73,7 @@ impl Bodies {
     }
 
     /// The `i`-th of a mixed lot, at `pose`.
-    pub fn spawn(&self, commands: &mut Commands, i: usize, pose: Transform) {
+    pub fn spawn(&self, commands: &mut Commands, i: usize, pose: Transform) -> Entity {
         let mut body = commands.spawn((RigidBody::Dynamic, Velocity::default(), pose, Visibility::default()));
         match i % 4 {
             0 | 2 => body.insert((
@@ -101,6 +101,7 @@ impl Bodies {
         if i % 4 == 3 {
             body.insert(pose * Transform::from_rotation(Quat::from_rotation_z(FRAC_PI_2)));
         }
+        body.id()
     }
 
     /// A small open boat.

@@ -30,7 +30,7 @@ use std::path::Path;
 use views::View;
 
 /// World height of the river, m above mean sea level.
-const LEVEL: f32 = 0.8;
+pub const LEVEL: f32 = 0.8;
 /// Where bodies begin, upstream of the cameras.
 const START: Vec2 = Vec2::new(-98.0, 196.0);
 /// Where the river leaves the terrain, and a sensor returns bodies to the start.
@@ -115,7 +115,7 @@ fn ground_collider(bed: &WaterBed) -> Collider {
 
 /// The water, as large as the terrain.
 fn river(mut commands: Commands, scene: Res<Scene>) {
-    let mut river = commands.spawn((
+    commands.spawn((
         Name::new("river"),
         Water::new(scene.bed.elevations().extent()),
         WaterOptics::RIVER,
@@ -125,9 +125,6 @@ fn river(mut commands: Commands, scene: Res<Scene>) {
         scene.flow.clone(),
         Transform::from_xyz(0.0, LEVEL, 0.0),
     ));
-    if scene.view.freezing > 0.0 {
-        river.insert(WaterIce { freezing: scene.view.freezing, ..default() });
-    }
     // Who arrives at the end begins anew.
     commands.spawn((
         Collider::cuboid(24.0, 4.0, 3.0),

@@ -9,8 +9,12 @@ pub mod bed;
 pub mod body;
 #[cfg(feature = "rapier")]
 pub mod buoyancy;
+pub mod features;
 #[cfg(test)]
 mod layout;
+#[cfg(feature = "panel")]
+pub mod panel;
+pub mod preset;
 pub mod query;
 pub mod reflection;
 mod report;

@@ -18,6 +18,11 @@ pub enum Fresnel {
     /// The mean of both polarisations (Fresnel 1823).
     #[default]
     Exact,
+    /// The same share (0…1) at every angle: what is left when the Fresnel term is switched off.
+    Constant {
+        /// Share of reflection.
+        share: f32,
+    },
 }
 
 /// Optical properties of a water body.

@@ -73,6 +73,10 @@ pub(crate) struct GpuSurface {
     pub flatness: f32,
     pub sharpness: f32,
     pub shininess: f32,
+
+    // For SurfaceView.
+    pub current_drift: Vec2,
+    pub current_scale: f32,
 }
 
 impl GpuSurface {

@@ -12,6 +12,7 @@ mod ripples;
 mod sync;
 mod tile;
 mod viewer;
+mod views;
 mod write;
 
 pub(crate) use ripples::advance_ripples;
@@ -85,6 +86,18 @@ pub enum SurfaceView {
     Height,
     /// Opacity of the water's edge.
     Edge,
+    /// The current: hue its direction, brightness its speed up to 2 m/s, with arrows along it.
+    Flow,
+    /// Depth of the still water: red at the waterline, yellow 1 m, green 3 m, cyan 7 m, blue 15 m, black 31 m.
+    Depth,
+    /// The triangles of the mesh as green lines over the darkened water.
+    Wireframe,
+    /// Density of foam.
+    Foam,
+    /// What touches the water: red the share that bodies cover, green raised and blue lowered rings, full at 5 cm.
+    Interaction,
+    /// What a metre of the dyed water lets through: white where there is no dye.
+    Dye,
 }
 
 /// Draws the water. Does nothing in an app without a GPU device.
@@ -111,6 +124,7 @@ impl Plugin for SurfacePlugin {
         load_shader_library!(app, "stylised.wgsl");
         load_shader_library!(app, "light.wgsl");
         load_shader_library!(app, "refraction.wgsl");
+        load_shader_library!(app, "views.wgsl");
         embedded_asset!(app, "surface.wgsl");
 
         app.add_plugins(MaterialPlugin::<material::SurfaceMaterial>::default())

@@ -27,6 +27,8 @@ fn reflectance(cos_incidence: f32) -> f32 {
         share = r * r + (1.0 - r * r) * pow(1.0 - cos_i, 5.0);
     } else if surface.fresnel == types::FRESNEL_RECIPROCAL {
         share = pow(1.0 + cos_i, -5.0);
+    } else if surface.fresnel == types::FRESNEL_CONSTANT {
+        share = surface.fresnel_correction;
     } else {
         share = fresnel_exact(cos_i, surface.index);
     }

@@ -13,6 +13,7 @@
 #import freshet::surface::refraction
 #import freshet::surface::scene
 #import freshet::surface::types
+#import freshet::surface::views
 #import freshet::surface::waves
 
 #ifdef TONEMAP_IN_SHADER
@@ -73,6 +74,7 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
     let footprint = flow::Footprint(dpdx(in.rest), dpdy(in.rest));
     let drift = flow::drift(in.rest, still_depth);
     let facet = facet(in.rest, still_depth, drift, footprint, fields.slope);
+    let pixel_size = max(length(dpdx(in.rest)), length(dpdy(in.rest)));
     let normal = normal_of(facet.slope);
     let to_eye = scene::direction_to_eye(in.world);
     optics::dye = fields.dye;
@@ -115,6 +117,12 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
         case types::VIEW_NORMAL: { color = normal * 0.5 + 0.5; }
         case types::VIEW_HEIGHT: { color = split(in.world.y - surface.level); }
         case types::VIEW_EDGE: { color = vec3(cover); }
+        case types::VIEW_FLOW: { color = views::flow(in.rest, still_depth, pixel_size); }
+        case types::VIEW_DEPTH: { color = views::depth(still_depth); }
+        case types::VIEW_WIREFRAME: { color = mix(0.3 * color, vec3(0.0, 1.0, 0.0), views::wire(in.rest, pixel_size)); }
+        case types::VIEW_FOAM: { color = vec3(fields.foam); }
+        case types::VIEW_INTERACTION: { color = vec3(fields.cover, max(20.0 * vec2(fields.height, -fields.height), vec2(0.0))); }
+        case types::VIEW_DYE: { color = exp(-fields.dye); }
         default: {}
     }
     return finish(color);

@@ -70,6 +70,10 @@ struct Surface {
     flatness: f32,
     sharpness: f32,
     shininess: f32,
+
+    // For SurfaceView.
+    current_drift: vec2<f32>,       // uniform part of the current, local xz, units: m/s
+    current_scale: f32,             // factor on the flow map
 }
 
 const FLAG_MIRROR: u32 = 1u;
@@ -86,7 +90,14 @@ const VIEW_FRESNEL: u32 = 3u;
 const VIEW_NORMAL: u32 = 4u;
 const VIEW_HEIGHT: u32 = 5u;
 const VIEW_EDGE: u32 = 6u;
+const VIEW_FLOW: u32 = 7u;
+const VIEW_DEPTH: u32 = 8u;
+const VIEW_WIREFRAME: u32 = 9u;
+const VIEW_FOAM: u32 = 10u;
+const VIEW_INTERACTION: u32 = 11u;
+const VIEW_DYE: u32 = 12u;
 
 const FRESNEL_SIMPLE: u32 = 0u;
 const FRESNEL_SCHLICK: u32 = 1u;
 const FRESNEL_RECIPROCAL: u32 = 2u;
+const FRESNEL_CONSTANT: u32 = 4u;

@@ -137,6 +137,7 @@ fn write_optics(gpu: &mut GpuSurface, entity: Entity, optics: &WaterOptics, repo
         Fresnel::Schlick => (1, 0.0),
         Fresnel::Reciprocal => (2, 0.0),
         Fresnel::Exact => (3, 0.0),
+        Fresnel::Constant { share } => (4, clamp("Fresnel::Constant::share", share, 0.0..=1.0, 0.5)),
     };
     let mut clamp3 = |field, value, fallback| reported.clamp3(entity, field, value, 0.0..=1e4, fallback);
     gpu.absorption = clamp3("WaterOptics::absorption", optics.absorption, usable.absorption);
@@ -168,6 +169,12 @@ fn write_detail(
         SurfaceView::Normal => 4,
         SurfaceView::Height => 5,
         SurfaceView::Edge => 6,
+        SurfaceView::Flow => 7,
+        SurfaceView::Depth => 8,
+        SurfaceView::Wireframe => 9,
+        SurfaceView::Foam => 10,
+        SurfaceView::Interaction => 11,
+        SurfaceView::Dye => 12,
     };
 }
 
@@ -187,8 +194,10 @@ fn write_ground(
         gpu.bed_base = bed.base;
         textures.bed = Some(ground.bed(&bed.elevations, images));
     }
+    gpu.current_drift = water.drift;
     if let Some((map, scale)) = &water.flow {
         gpu.flags |= GpuSurface::FLOW;
+        gpu.current_scale = *scale;
         gpu.flow_cell = map.cell_size();
         gpu.flow_size = map.size().as_vec2();
         gpu.bank_depth = WaterFlow::BANK_DEPTH;

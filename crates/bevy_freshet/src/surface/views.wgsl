@@ -1,0 +1,81 @@
+// Colours for inspection; `views.rs` says how to read them.
+#define_import_path freshet::surface::views
+
+#import freshet::surface::bindings::surface
+#import freshet::surface::ground
+#import freshet::surface::types
+
+// Speed at which the colour of the current is brightest, m/s.
+const FULL_SPEED: f32 = 2.0;
+
+// Pixels across the tile of an arrow, at least, where the water is seen most sharply.
+const ARROW_PIXELS: f32 = 24.0;
+
+// The current at local `place`, local xz, m/s.
+fn current(place: vec2<f32>, still_depth: f32) -> vec2<f32> {
+    var velocity = surface.current_drift;
+    if (surface.flags & types::FLAG_FLOW) != 0u {
+        let share = smoothstep(0.0, surface.bank_depth, still_depth);
+        velocity += surface.current_scale * share * ground::mapped_current(place);
+    }
+    return velocity;
+}
+
+// The fully saturated colour at `turn` (0…1) around the wheel: red, yellow, green, cyan, blue, magenta.
+fn hue(turn: f32) -> vec3<f32> {
+    return clamp(abs(fract(turn + vec3(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0, vec3(0.0), vec3(1.0));
+}
+
+// Direction as hue, from east (+x) over south (+z); speed as brightness; an arrow in every tile.
+fn flow(place: vec2<f32>, still_depth: f32, pixel_size: f32) -> vec3<f32> {
+    let velocity = current(place, still_depth);
+    let speed = length(velocity);
+    let color = hue(atan2(velocity.y, velocity.x) / 6.2831853) * min(speed / FULL_SPEED, 1.0);
+    return mix(color, vec3(1.0), arrow(place, still_depth, pixel_size));
+}
+
+// Share of a pixel that the arrow of its tile covers. Tiles measure a power of two, so that they stay where they are while
+// the eye comes closer; arrows are as long as the water flows fast, up to their tile.
+fn arrow(place: vec2<f32>, still_depth: f32, pixel_size: f32) -> f32 {
+    let tile = exp2(ceil(log2(max(pixel_size, 1e-4) * ARROW_PIXELS)));
+    let center = (floor(place / tile) + 0.5) * tile;
+    let velocity = current(center, still_depth);
+    let speed = length(velocity);
+    if speed < 1e-3 {
+        return 0.0;
+    }
+    let along = velocity / speed;
+    let from_center = (place - center) / tile;
+    let p = vec2(dot(from_center, along), along.x * from_center.y - along.y * from_center.x);
+    let half_length = mix(0.15, 0.45, min(speed / FULL_SPEED, 1.0));
+    // A shaft, and a head of half its length that narrows to the tip.
+    let head = half_length - p.x;
+    let shaft = max(abs(p.y) - 0.02, max(-half_length - p.x, p.x - half_length));
+    let tip = max(abs(p.y) - 0.35 * head, max(-head, head - 0.6 * half_length));
+    let distance = min(shaft, tip) * tile / max(pixel_size, 1e-4);
+    return clamp(0.5 - distance, 0.0, 1.0);
+}
+
+// Depth by colour: red 0, yellow 1, green 3, cyan 7, blue 15, black 31 m and more; between these by log₂(1 + depth).
+fn depth(still_depth: f32) -> vec3<f32> {
+    let step = min(log2(1.0 + max(still_depth, 0.0)), 5.0);
+    if step < 4.0 {
+        return hue(step / 6.0);
+    }
+    return vec3(0.0, 0.0, 5.0 - step);
+}
+
+// Share of a pixel that the edges of the mesh's triangles cover, see `nested_grid`: the grid lines of the ring, and the
+// diagonals towards +x +z. Where cells are too small to be told apart the lines fade.
+fn wire(place: vec2<f32>, pixel_size: f32) -> f32 {
+    let from_center = place - surface.mesh_center;
+    let distance = max(abs(from_center.x), abs(from_center.y));
+    let ring = max(ceil(log2(max(distance / surface.mesh_reach, 1e-6))), 0.0);
+    let cell = surface.mesh_cell * exp2(ring);
+    let p = fract(from_center / cell);
+    let to_grid = min(min(p.x, 1.0 - p.x), min(p.y, 1.0 - p.y));
+    // The diagonal runs from the corner of the least x and z to that of the greatest.
+    let to_diagonal = abs(p.x - p.y) * 0.70710678;
+    let pixels = min(to_grid, to_diagonal) * cell / max(pixel_size, 1e-6);
+    return clamp(1.0 - pixels, 0.0, 1.0) * smoothstep(3.0, 8.0, cell / max(pixel_size, 1e-6));
+}

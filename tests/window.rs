@@ -1,0 +1,296 @@
+//! The panel in a real window, worked by real input: a slider is dragged with the pointer, and setting and picture follow.
+//!
+//! Runs under its own X server, Xvfb, with xdotool for hands. Where these are missing it says so and passes.
+#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
+
+use bevy::{
+    camera::RenderTarget,
+    core_pipeline::tonemapping::Tonemapping,
+    prelude::*,
+    render::view::screenshot::{Screenshot, ScreenshotCaptured},
+    window::WindowResolution,
+};
+use bevy_egui::PrimaryEguiContext;
+use bevy_freshet::{panel::*, prelude::*, reflection::MirrorCamera};
+use std::{
+    env,
+    path::Path,
+    process::{Child, Command, ExitCode, Stdio},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+/// Pixels of the window.
+const SIZE: UVec2 = UVec2::new(640, 360);
+/// Longest time for the whole script.
+const PATIENCE: Duration = Duration::from_secs(120);
+/// Tells the process that it is the one with the window.
+const INSIDE: &str = "FRESHET_WINDOW_TEST";
+
+fn main() -> ExitCode {
+    if env::var_os(INSIDE).is_some() {
+        return inside();
+    }
+    // What cargo asks every test binary.
+    if env::args().any(|arg| arg == "--list") {
+        return ExitCode::SUCCESS;
+    }
+    if !cfg!(target_os = "linux") || !["Xvfb", "xdotool"].into_iter().all(is_there) {
+        println!("the panel in a window: skipped, as it needs Xvfb and xdotool (`cargo xtask setup` installs them)");
+        return ExitCode::SUCCESS;
+    }
+    let (mut server, display) = start_server();
+    let status = Command::new(env::current_exe().unwrap()).env("DISPLAY", display).env(INSIDE, "1").status();
+    server.kill().unwrap();
+    server.wait().unwrap();
+    if status.unwrap().success() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+fn is_there(program: &str) -> bool {
+    env::split_paths(&env::var_os("PATH").unwrap_or_default()).any(|folder| folder.join(program).is_file())
+}
+
+/// An X server of our own, on the first display that is free.
+fn start_server() -> (Child, String) {
+    for number in 90..120 {
+        let socket = format!("/tmp/.X11-unix/X{number}");
+        if Path::new(&socket).exists() {
+            continue;
+        }
+        let screen = format!("{}x{}x24", SIZE.x, SIZE.y);
+        let mut server = Command::new("Xvfb")
+            .args([&format!(":{number}"), "-screen", "0", &screen, "-nolisten", "tcp"])
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        for _ in 0..100 {
+            sleep(Duration::from_millis(100));
+            if Path::new(&socket).exists() {
+                return (server, format!(":{number}"));
+            }
+            // Another test was faster.
+            if server.try_wait().unwrap().is_some() {
+                break;
+            }
+        }
+        _ = server.kill();
+        server.wait().unwrap();
+    }
+    panic!("no X server could be started");
+}
+
+/// The app with the window and the script that works it.
+fn inside() -> ExitCode {
+    let resolution = WindowResolution::new(SIZE.x, SIZE.y).with_scale_factor_override(1.0);
+    let window = Window { title: "panel".into(), resolution, position: WindowPosition::At(IVec2::ZERO), ..default() };
+    let exit = App::new()
+        .add_plugins((
+            DefaultPlugins.set(WindowPlugin { primary_window: Some(window), ..default() }),
+            WaterPlugin,
+            WaterPanelPlugin::default(),
+        ))
+        .insert_resource(ClearColor(Color::srgb(0.5, 0.7, 0.9)))
+        .insert_resource(Script { step: 0, frames: 0, start: Instant::now(), pictures: Vec::new() })
+        .add_systems(Startup, setup)
+        .add_systems(Update, run_script)
+        .run();
+    match exit {
+        AppExit::Success => ExitCode::SUCCESS,
+        AppExit::Error(_) => ExitCode::FAILURE,
+    }
+}
+
+/// The water before a camera of the window, and a second camera that draws to a picture and was there first.
+fn setup(mut commands: Commands, mut images: ResMut<Assets<Image>>) {
+    let picture = images.add(Image::new_target_texture(
+        32,
+        32,
+        bevy::render::render_resource::TextureFormat::Rgba8UnormSrgb,
+        None,
+    ));
+    commands.spawn((
+        Camera3d::default(),
+        Camera { order: -5, ..default() },
+        RenderTarget::Image(picture.into()),
+        NoWater,
+    ));
+    commands.spawn((Water::default(), WaterOptics { absorption: Vec3::splat(0.1), ..default() }, WaterWaves::still()));
+    commands.spawn((DirectionalLight::default(), Transform::default().looking_to(vec3(-0.5, -1.0, -0.4), Vec3::Y)));
+    commands.spawn((
+        Camera3d::default(),
+        Tonemapping::None,
+        Transform::from_xyz(0.0, 3.0, 8.0).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+}
+
+#[derive(Resource)]
+struct Script {
+    step: usize,
+    /// Frames since the step began.
+    frames: u32,
+    start: Instant,
+    pictures: Vec<Image>,
+}
+
+/// Frames after which the effect of an input is looked for: events come one frame late, a pipeline some frames.
+const WAIT: u32 = 12;
+
+/// What is done and expected, one step after the other.
+fn run_script(world: &mut World) {
+    world.resource_scope(|world, mut script: Mut<Script>| {
+        assert!(script.start.elapsed() < PATIENCE, "step {} does not end", script.step);
+        script.frames += 1;
+        let panel = world.resource::<WaterPanel>();
+        let done = match script.step {
+            // The panel is there, over the camera of the window alone.
+            0 => {
+                script.frames > WAIT && panel.place("reflection").or(panel.place("View")).is_some() && {
+                    assert_context_is_on_window(world);
+                    click(header("Switches", world), 1);
+                    true
+                }
+            }
+            1 => script.frames > WAIT && panel.place("reflection").is_some() && take_picture(world),
+            // A tick with the pointer: the reflection goes out of the picture.
+            2 => {
+                script.pictures.len() == 1 && {
+                    assert_eq!(reflectivity(world), 1.0);
+                    let place = world.resource::<WaterPanel>().place("reflection").unwrap();
+                    click(place.min + vec2(8.0, 0.5 * place.height()), 1);
+                    true
+                }
+            }
+            3 => script.frames > WAIT && reflectivity(world) == 0.0 && take_picture(world),
+            4 => {
+                script.pictures.len() == 2 && {
+                    assert_picture_changed(&script.pictures[0], &script.pictures[1]);
+                    save(&script.pictures[1]);
+                    // The group is closed again, so that the slider is in sight.
+                    click(header("Switches", world), 1);
+                    true
+                }
+            }
+            5 => {
+                script.frames > WAIT && panel.place("reflection").is_none() && {
+                    click(header("Optics", world), 1);
+                    true
+                }
+            }
+            6 => {
+                script.frames > WAIT && panel.place("Reflectivity").is_some() && {
+                    let place = panel.place("Reflectivity").unwrap();
+                    drag(place.min + vec2(4.0, 0.5 * place.height()), place.min + vec2(104.0, 0.5 * place.height()));
+                    true
+                }
+            }
+            7 => script.frames > WAIT && reflectivity(world) > 0.8 && take_picture(world),
+            8 => {
+                script.pictures.len() == 3 && {
+                    assert_picture_changed(&script.pictures[1], &script.pictures[2]);
+                    key("F1");
+                    true
+                }
+            }
+            // Hidden, it takes no input.
+            9 => {
+                script.frames > WAIT && !panel.visible && {
+                    assert!(panel.place("View").is_none());
+                    let egui = world.resource::<bevy_egui::input::EguiWantsInput>();
+                    assert!(!egui.wants_any_input(), "{egui:?}");
+                    key("F1");
+                    true
+                }
+            }
+            10 => script.frames > WAIT && panel.visible && panel.place("View").is_some(),
+            _ => {
+                println!("the panel in a window: {:.1} s", script.start.elapsed().as_secs_f32());
+                world.write_message(AppExit::Success);
+                false
+            }
+        };
+        if done {
+            (script.step, script.frames) = (script.step + 1, 0);
+        }
+    });
+}
+
+fn assert_context_is_on_window(world: &mut World) {
+    let mut contexts = world.query_filtered::<(&RenderTarget, Has<MirrorCamera>), With<PrimaryEguiContext>>();
+    let contexts: Vec<_> = contexts.iter(world).collect();
+    assert!(matches!(contexts[..], [(RenderTarget::Window(_), false)]), "{contexts:?}");
+    let mut mirrors = world.query_filtered::<(), With<MirrorCamera>>();
+    assert_eq!(mirrors.iter(world).count(), 1, "there is a mirror that could have been taken");
+}
+
+fn header(title: &str, world: &World) -> Vec2 {
+    let place = world.resource::<WaterPanel>().place(title);
+    place.unwrap_or_else(|| panic!("{title} is not in sight")).center()
+}
+
+fn reflectivity(world: &mut World) -> f32 {
+    world.query::<&WaterOptics>().single(world).unwrap().reflectivity
+}
+
+fn xdotool(args: &[&str]) {
+    assert!(Command::new("xdotool").args(args).status().unwrap().success(), "{args:?}");
+}
+
+fn point(place: Vec2) {
+    xdotool(&["mousemove", &place.x.round().to_string(), &place.y.round().to_string()]);
+}
+
+/// Moves there and clicks. Egui must see the pointer before the button.
+fn click(place: Vec2, button: u32) {
+    point(place);
+    let button = button.to_string();
+    std::thread::spawn(move || {
+        sleep(Duration::from_millis(700));
+        xdotool(&["mousedown", &button]);
+        sleep(Duration::from_millis(500));
+        xdotool(&["mouseup", &button]);
+    });
+}
+
+fn drag(from: Vec2, to: Vec2) {
+    point(from);
+    std::thread::spawn(move || {
+        sleep(Duration::from_millis(700));
+        xdotool(&["mousedown", "1"]);
+        for i in 1..=5 {
+            sleep(Duration::from_millis(200));
+            point(from.lerp(to, i as f32 / 5.0));
+        }
+        sleep(Duration::from_millis(300));
+        xdotool(&["mouseup", "1"]);
+    });
+}
+
+fn key(name: &str) {
+    xdotool(&["key", name]);
+}
+
+fn take_picture(world: &mut World) -> bool {
+    world.spawn(Screenshot::primary_window()).observe(
+        |captured: On<ScreenshotCaptured>, mut script: ResMut<Script>| script.pictures.push(captured.image.clone()),
+    );
+    true
+}
+
+/// The water, right of the panel in the lower half, must have changed; the sky above must not.
+fn assert_picture_changed(before: &Image, after: &Image) {
+    let difference = |x: u32, y: u32| {
+        let [before, after] = [before, after].map(|image| image.get_color_at(x, y).unwrap().to_linear().to_vec3());
+        (before - after).abs().max_element()
+    };
+    let water = (0..10).map(|i| difference(SIZE.x - 60 + 5 * i, SIZE.y - 60)).sum::<f32>() / 10.0;
+    assert!(water > 0.02, "the water is the same: {water}");
+    let sky = difference(SIZE.x - 40, 10);
+    assert!(sky < 0.01, "the sky has changed: {sky}");
+}
+
+/// Keeps the picture where `FRESHET_WINDOW_PICTURE` says, for looking at.
+fn save(picture: &Image) {
+    if let Some(path) = env::var_os("FRESHET_WINDOW_PICTURE") {
+        picture.clone().try_into_dynamic().unwrap().to_rgb8().save(path).unwrap();
+    }
+}
