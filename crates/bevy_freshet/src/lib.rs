@@ -53,7 +53,12 @@ impl Plugin for WaterPlugin {
         #[cfg(feature = "rapier")]
         app.add_plugins(buoyancy::BuoyancyPlugin);
         if app.get_sub_app(RenderApp).is_some() {
-            app.add_plugins((surface::SurfacePlugin, reflection::ReflectionPlugin, bed::BedPlugin));
+            app.add_plugins((
+                surface::SurfacePlugin,
+                reflection::ReflectionPlugin,
+                bed::BedPlugin,
+                simulation::SimulationPlugin,
+            ));
         }
     }
 

@@ -159,8 +159,7 @@ impl Rings {
         let way = ways.iter().zip(step.absorbs).filter(|(_, absorbs)| *absorbs).map(|(way, _)| *way);
         let width = rim_width(&self.cells);
         let into = (1.0 - way.fold(width, f32::min) / width).max(0.0);
-        // ∫ rate dx/c over both ways = ln(1/REFLECTED), with ∫ s² ds = 1/3.
-        let most = 1.5 * -libm::logf(REFLECTED) * celerity_squared.sqrt() / (width * self.cells.side);
+        let most = rim_decay(&self.cells) * celerity_squared.sqrt();
         libm::expf(-step.dt * (1.0 / step.decay + most * into * into))
     }
 
@@ -191,6 +190,12 @@ impl Rings {
 /// Width of an absorbing rim, cells.
 pub fn rim_width(cells: &Cells) -> f32 {
     (cells.size.min_element() as f32 / 4.0).min(16.0)
+}
+
+/// Rate of decay at the outer end of an absorbing rim for a celerity of one, 1/m. It grows with the square of the way s into
+/// the rim of width w: `2 ∫ rate dx/c = ln(1/REFLECTED)` with `∫ s² ds = 1/3`.
+pub fn rim_decay(cells: &Cells) -> f32 {
+    1.5 * -libm::logf(REFLECTED) / (rim_width(cells) * cells.side)
 }
 
 /// Weights of the cells 2 downstream to 3 upstream of a cell for the value `t` (0…1) cells upstream of it: the Lagrange
