@@ -5,6 +5,10 @@
 //!
 //! SI units throughout; y is up and the still surface is level.
 
+// The scene of the integration tests serves unit tests as well.
+#[cfg(test)]
+extern crate self as bevy_freshet;
+
 pub mod bed;
 pub mod body;
 #[cfg(feature = "rapier")]

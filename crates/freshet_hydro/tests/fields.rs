@@ -201,7 +201,7 @@ proptest! {
             let energy = rings.energy(DT);
             if moves {
                 // Banks into which a current runs straight may give back a little for a moment.
-                prop_assert!(energy <= first * 1.02, "step {step}: {first} became {energy}");
+                prop_assert!(energy <= first * 1.05, "step {step}: {first} became {energy}");
             } else {
                 prop_assert!((energy / last - 1.0).abs() < 1e-4, "step {step}: {last} became {energy}");
             }

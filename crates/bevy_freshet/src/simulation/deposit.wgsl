@@ -9,7 +9,7 @@ struct Tile {
 }
 
 struct Stroke {
-    place: vec2<f32>,       // local xz, units: m
+    middle: vec2<f32>,      // local xz, units: m
     radius: f32,            // standard deviation, units: m
     volume: f32,            // units: m³
     dye: vec3<f32>,         // units: (1/m)·m³
@@ -27,9 +27,12 @@ fn wet(at: vec2<i32>) -> bool {
     return inside(at) && celerity[index(at)] > 0.0;
 }
 
-// What reaches `at` from its neighbour `from`, a quarter of the difference; nothing across the face of a dry cell.
-fn across(at: vec2<i32>, from: vec2<i32>) -> f32 {
-    return select(0.0, 0.25 * (bodies[index(from)].w - bodies[index(at)].w), wet(from));
+// What reaches `at` from its neighbour `beside`, a quarter of the difference; nothing across the face of a dry cell.
+fn across(at: vec2<i32>, beside: vec2<i32>) -> f32 {
+    if !wet(beside) {
+        return 0.0;
+    }
+    return 0.25 * (bodies[index(beside)].w - bodies[index(at)].w);
 }
 
 fn spread_along_x(at: vec2<i32>) -> f32 {
@@ -63,7 +66,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
     var added = vec4(0.0);
     for (var i = tile.first; i < tile.first + tile.strokes; i++) {
         let stroke = strokes[i];
-        let away = place(at) - stroke.place;
+        let away = place(at) - stroke.middle;
         let variance = stroke.radius * stroke.radius;
         let density = exp(-0.5 * dot(away, away) / variance) / (6.2831853 * variance);
         height += stroke.volume * density;

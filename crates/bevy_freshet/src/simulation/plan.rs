@@ -109,9 +109,7 @@ impl Surroundings<'_> {
         if state.version != work.ground {
             runs.push(self.run_on_water(&stages.ground, state, &[&state.ground, &state.celerity], all));
         }
-        // Silhouettes are those of the last step while the clock stands still.
-        let steps = work.ring_steps + work.transport_steps > 0 || silhouettes > 0;
-        if state.covered && steps {
+        if state.covered {
             plans.cleared.push(state.bodies.clone());
             state.covered = false;
         }

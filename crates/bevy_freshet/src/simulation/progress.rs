@@ -194,14 +194,16 @@ impl FieldProgress {
             let rings = settings.interaction.rings;
             let factor = reported.clamp(settings.entity, "WaterInteraction::rings", rings, 0.0..=10.0, usable);
             work.deposits = GpuDeposits::new(settings.window, &all, &mut self.drafts, factor);
-            work.numbers.silhouettes = work.deposits.silhouettes.len() as u32;
             self.keep_alive(&work, settings);
             let run = STEP.as_secs_f32() * steps as f32;
             work.ring_steps = if self.rings_last > 0.0 { steps * parts.rings } else { 0 };
             work.transport_steps = if self.matter_lasts > 0.0 { steps * parts.transport } else { 0 };
             self.rings_last -= run;
             self.matter_lasts -= run;
+        } else if moved {
+            work.deposits = GpuDeposits::covers(settings.window, deposits);
         }
+        work.numbers.silhouettes = work.deposits.silhouettes.len() as u32;
         let works = work.ring_steps + work.transport_steps > 0 || !work.deposits.silhouettes.is_empty();
         (works || moved).then_some(work)
     }

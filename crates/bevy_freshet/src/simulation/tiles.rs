@@ -34,7 +34,7 @@ pub(crate) struct GpuTile {
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(test, derive(Reflect))]
 pub(crate) struct GpuStroke {
-    pub place: Vec2,
+    pub middle: Vec2,
     pub radius: f32,
     pub volume: f32,
     pub dye: Vec3,
@@ -95,6 +95,11 @@ impl FieldWindow {
 }
 
 impl GpuDeposits {
+    /// Silhouettes alone, while the clock stands still.
+    pub fn covers(window: &FieldWindow, deposits: &Deposits) -> Self {
+        Self { silhouettes: Drafts::default().advance(window, &deposits.silhouettes, 0.0), ..default() }
+    }
+
     /// Deposits on a window after `drafts`, with the rings of bodies times `factor`.
     pub fn new(window: &FieldWindow, deposits: &Deposits, drafts: &mut Drafts, factor: f32) -> Self {
         let silhouettes = drafts.advance(window, &deposits.silhouettes, factor);
@@ -107,7 +112,7 @@ impl GpuDeposits {
         }
         for stroke in &deposits.strokes {
             let stroke = gpu_stroke(stroke, window.cell);
-            let (middle, reach) = (window.cells_from_place(stroke.place), stroke.radius / window.cell * REACH);
+            let (middle, reach) = (window.cells_from_place(stroke.middle), stroke.radius / window.cell * REACH);
             let corners = [middle - reach, middle + reach].map(|corner| corner.floor().as_ivec2());
             for tile in tiles(window, corners[0], corners[1]) {
                 reached.entry(tile).or_default().push(stroke);
@@ -134,7 +139,7 @@ fn tiles(window: &FieldWindow, first: IVec2, last: IVec2) -> impl Iterator<Item 
 
 fn gpu_stroke(stroke: &Stroke, cell: f32) -> GpuStroke {
     let &Stroke { place, radius, volume, foam, dye } = stroke;
-    GpuStroke { place, radius: radius.max(NARROWEST * cell), volume, dye, foam }
+    GpuStroke { middle: place, radius: radius.max(NARROWEST * cell), volume, dye, foam }
 }
 
 #[cfg(test)]
@@ -191,7 +196,7 @@ mod tests {
             for (n, stroke) in strokes.iter().enumerate().filter(|(_, stroke)| stroke.place.distance(place) < 4.0 * 0.6) {
                 let tile = of_cell[0];
                 let in_tile = &sorted.strokes[tile.first as usize..(tile.first + tile.strokes) as usize];
-                assert_eq!(in_tile.iter().filter(|other| other.place == stroke.place).count(), 1);
+                assert_eq!(in_tile.iter().filter(|other| other.middle == stroke.place).count(), 1);
                 met[n] += 1;
             }
         }

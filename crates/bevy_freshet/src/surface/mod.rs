@@ -86,6 +86,13 @@ pub enum SurfaceView {
     Height,
     /// Opacity of the water's edge.
     Edge,
+    /// Simulated density of foam.
+    Foam,
+    /// What bodies and touches do: the share of the water that bodies cover in red; the height of the rings, split as in
+    /// [`SurfaceView::Height`], in green and blue.
+    Interaction,
+    /// Absorption of dye, 1/m.
+    Dye,
 }
 
 /// Draws the water. Does nothing in an app without a GPU device.

@@ -74,6 +74,9 @@ const VIEW_FRESNEL: u32 = 3u;
 const VIEW_NORMAL: u32 = 4u;
 const VIEW_HEIGHT: u32 = 5u;
 const VIEW_EDGE: u32 = 6u;
+const VIEW_FOAM: u32 = 7u;
+const VIEW_INTERACTION: u32 = 8u;
+const VIEW_DYE: u32 = 9u;
 
 const FRESNEL_SIMPLE: u32 = 0u;
 const FRESNEL_SCHLICK: u32 = 1u;

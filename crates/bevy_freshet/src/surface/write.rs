@@ -171,6 +171,9 @@ fn write_detail(
         SurfaceView::Normal => 4,
         SurfaceView::Height => 5,
         SurfaceView::Edge => 6,
+        SurfaceView::Foam => 7,
+        SurfaceView::Interaction => 8,
+        SurfaceView::Dye => 9,
     };
 }
 
