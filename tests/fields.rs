@@ -82,7 +82,7 @@ fn waves_that_run_up_make_more_foam_at_the_shore() {
     let shore = |waves: WaterWaves| {
         let mut stage = Stage::new();
         lay(&mut stage, |p| -0.1 * (p.x + 12.0));
-        let sources = WaterFoam { shore: 0.5, shore_depth: 0.3, ..none() };
+        let sources = WaterFoam { shore: 0.5, shore_depth: 0.3, life: 1.5, ..none() };
         let (_, camera) = foamy(&mut stage, sources, waves);
         stage.settle();
         stage.run(4.0);

@@ -69,11 +69,17 @@ fn a_ring_grows_with_its_celerity_in_every_direction_and_on_every_grid() {
 fn a_ring_comes_back_from_a_bank_upright_and_as_if_from_its_mirror_image() {
     let (side, bank) = (0.25, 40);
     // A bank along z, beyond which the land is dry; without it the ring's mirror image would come from behind it.
-    let mut walled = Rings::new(cells(uvec2(80, 81), side), 1.2, |at| if at.x < bank { 9.0 } else { -1.0 }, |_| Vec2::ZERO);
+    let mut walled =
+        Rings::new(cells(uvec2(80, 81), side), 1.2, |at| if at.x < bank { 9.0 } else { -1.0 }, |_| Vec2::ZERO);
     let mut mirrored = Rings::new(cells(uvec2(80, 81), side), 1.2, |_| 9.0, |_| Vec2::ZERO);
     let source = place(ivec2(24, 40), side);
     hump(&mut walled, source, 0.6, 0.05);
-    walled.waves.iter_mut().enumerate().filter(|(i, _)| *i as i32 % 80 >= bank).for_each(|(_, wave)| *wave = Vec2::ZERO);
+    walled
+        .waves
+        .iter_mut()
+        .enumerate()
+        .filter(|(i, _)| *i as i32 % 80 >= bank)
+        .for_each(|(_, wave)| *wave = Vec2::ZERO);
     hump(&mut mirrored, source, 0.6, 0.05);
     hump(&mut mirrored, vec2(2.0 * bank as f32 * side - source.x, source.y), 0.6, 0.05);
     for _ in 0..300 {
@@ -253,7 +259,8 @@ fn dye_and_foam_are_kept_and_move_with_the_flow() {
 
 #[test]
 fn dye_spreads_as_the_diffusion_equation_says() {
-    let mut transport = Transport::new(cells(uvec2(101, 101), 0.25), 1e30, |_| Stream { depth: 1.0, ..Default::default() });
+    let mut transport =
+        Transport::new(cells(uvec2(101, 101), 0.25), 1e30, |_| Stream { depth: 1.0, ..Default::default() });
     let (center, radius, spreading) = (Vec2::splat(12.625), 0.8, 0.1);
     spill(&mut transport, center, radius, Vec4::ONE);
     (0..600).for_each(|_| transport.step(&TransportStep { spreading, ..LASTING }));
@@ -270,8 +277,7 @@ fn nothing_crosses_banks_and_everything_may_leave_the_water() {
     let bank = |at: IVec2| if at.y < 20 { 1.0 } else { -0.2 };
     // Against the bank, where the current may be as wrong as it likes.
     let into = Stream { velocity: vec2(0.0, 0.7), ..Default::default() };
-    let mut walled =
-        Transport::new(cells(uvec2(40, 40), 0.25), 1e30, |at| Stream { depth: bank(at), ..into });
+    let mut walled = Transport::new(cells(uvec2(40, 40), 0.25), 1e30, |at| Stream { depth: bank(at), ..into });
     spill(&mut walled, vec2(5.0, 2.5), 0.5, Vec4::ONE);
     walled.matter.iter_mut().skip(20 * 40).for_each(|matter| *matter = Vec4::ZERO);
     let before = walled.total();
@@ -280,8 +286,9 @@ fn nothing_crosses_banks_and_everything_may_leave_the_water() {
     assert!(walled.matter.iter().skip(20 * 40).all(|matter| *matter == Vec4::ZERO), "land stays dry");
     assert!(walled.matter.iter().all(|matter| matter.min_element() > -1e-6), "no density is negative");
 
-    let mut open = Transport::new(cells(uvec2(40, 40), 0.25), 1e30, |at| {
-        Stream { depth: if at.y < 20 { 1.0 } else { -1e6 }, ..into }
+    let mut open = Transport::new(cells(uvec2(40, 40), 0.25), 1e30, |at| Stream {
+        depth: if at.y < 20 { 1.0 } else { -1e6 },
+        ..into
     });
     spill(&mut open, vec2(5.0, 2.5), 0.5, Vec4::ONE);
     (0..900).for_each(|_| open.step(&LASTING));

@@ -93,19 +93,13 @@ impl Plugin for SimulationPlugin {
             )
             .add_systems(
                 PostUpdate,
-                (
-                    window::place_windows.in_set(FieldSystems::Window),
-                    progress::step_fields.in_set(FieldSystems::Step),
-                ),
+                (window::place_windows.in_set(FieldSystems::Window), progress::step_fields.in_set(FieldSystems::Step)),
             );
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         render_app
             .init_resource::<plan::FieldPlans>()
             .add_systems(RenderStartup, (stages::create_stages, state::forget_states))
             .add_systems(Render, plan::plan_fields.in_set(RenderSystems::PrepareBindGroups))
-            .add_systems(
-                RenderGraph,
-                plan::run_stages.in_set(RenderGraphSystems::Render).before(camera_driver),
-            );
+            .add_systems(RenderGraph, plan::run_stages.in_set(RenderGraphSystems::Render).before(camera_driver));
     }
 }

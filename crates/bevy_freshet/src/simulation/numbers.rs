@@ -102,8 +102,7 @@ impl GpuNumbers {
     fn set_rings(&mut self, entity: Entity, settings: &WaterInteraction, speed: f32, reported: &mut Reported) -> u32 {
         let mut clamp = |field, value, range, fallback| reported.clamp(entity, field, value, range, fallback);
         let usable = WaterInteraction::default();
-        let length =
-            clamp("WaterInteraction::wavelength", settings.wavelength, 0.05..=1e3, usable.wavelength);
+        let length = clamp("WaterInteraction::wavelength", settings.wavelength, 0.05..=1e3, usable.wavelength);
         self.ring_decay = clamp("WaterInteraction::decay", settings.decay, 0.05..=1e3, usable.decay).recip();
         self.wavenumber = TAU / length;
         self.deep_celerity = GRAVITY / self.wavenumber;
@@ -112,7 +111,8 @@ impl GpuNumbers {
         self.ring_step = STEP / parts;
         self.most_celerity = (rings::MAX_COURANT * self.cell / self.ring_step).powi(2);
         if courant > parts {
-            let problem = format_args!("is {length} m: its rings cross more than {MOST_PARTS} cells a step; they are slowed");
+            let problem =
+                format_args!("is {length} m: its rings cross more than {MOST_PARTS} cells a step; they are slowed");
             reported.warn(entity, "WaterInteraction::wavelength", problem);
         }
         let cells = Cells { size: self.size, side: self.cell };
@@ -122,7 +122,13 @@ impl GpuNumbers {
     }
 
     /// Dye, drift and the parts that their step needs.
-    fn set_transport(&mut self, entity: Entity, settings: &WaterInteraction, speed: f32, reported: &mut Reported) -> u32 {
+    fn set_transport(
+        &mut self,
+        entity: Entity,
+        settings: &WaterInteraction,
+        speed: f32,
+        reported: &mut Reported,
+    ) -> u32 {
         let mut clamp = |field, value, range, fallback| reported.clamp(entity, field, value, range, fallback);
         let usable = WaterInteraction::default();
         self.spreading = clamp("WaterInteraction::spreading", settings.spreading, 0.0..=1.0, usable.spreading);

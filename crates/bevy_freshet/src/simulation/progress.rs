@@ -130,7 +130,8 @@ pub(super) fn step_fields(
         } else {
             progress.resize(window, &mut pictures, &mut images);
             let settings = Settings { entity, interaction: settings, foam, water, window };
-            let work = progress.advance(&settings, deposits, &pictures, time.delta(), &mut ground, &mut images, &mut reported);
+            let work =
+                progress.advance(&settings, deposits, &pictures, time.delta(), &mut ground, &mut images, &mut reported);
             work.map_or(FieldFrame::Idle, |work| FieldFrame::Work(Box::new(work)))
         };
     }

@@ -114,8 +114,7 @@ fn new_stage(
     water: Option<BindGroupLayoutDescriptor>,
 ) -> Stage {
     let kinds = core::iter::once(uniform_buffer::<GpuNumbers>(false)).chain(bound.iter().copied().map(binding));
-    let entries: Vec<_> =
-        kinds.enumerate().map(|(n, entry)| entry.build(n as u32, ShaderStages::COMPUTE)).collect();
+    let entries: Vec<_> = kinds.enumerate().map(|(n, entry)| entry.build(n as u32, ShaderStages::COMPUTE)).collect();
     let layout = BindGroupLayoutDescriptor::new(label, &entries);
     let pipeline = cache.queue_compute_pipeline(ComputePipelineDescriptor {
         label: Some(label.into()),

@@ -68,9 +68,11 @@ impl Basin {
     fn read(&mut self, picture: Handle<Image>) -> Vec<Vec4> {
         let size = self.cells().size;
         let reader = self.stage.spawn(Readback::texture(picture));
-        self.stage.app.world_mut().entity_mut(reader).observe(
-            |read: On<ReadbackComplete>, mut to: ResMut<Read>| to.0 = Some(read.data.clone()),
-        );
+        self.stage
+            .app
+            .world_mut()
+            .entity_mut(reader)
+            .observe(|read: On<ReadbackComplete>, mut to: ResMut<Read>| to.0 = Some(read.data.clone()));
         for _ in 0..20 {
             self.stage.app.update();
             if let Some(data) = self.stage.app.world_mut().resource_mut::<Read>().0.take() {
@@ -134,12 +136,16 @@ impl Twin {
         let (place, side) = (basin.place(at), basin.cells().side);
         let depth = if water.covers(place) { water.still_depth(place) } else { -1e6 };
         let current = water.current(place);
-        let along = |axis: Vec2| (water.current(place + axis * side) - water.current(place - axis * side)) / (2.0 * side);
+        let along =
+            |axis: Vec2| (water.current(place + axis * side) - water.current(place - axis * side)) / (2.0 * side);
         let cover = |at: IVec2| bodies.iter().find(|one| one.cell.as_ivec2() == at);
         let around = (0..9).filter_map(|i| cover(at + ivec2(i % 3, i / 3) - 1));
-        let nearest = around.fold(None, |most: Option<&SilhouetteCell>, one| {
-            if most.is_none_or(|most| one.cover > most.cover) { Some(one) } else { most }
-        });
+        let nearest = around.fold(
+            None,
+            |most: Option<&SilhouetteCell>, one| {
+                if most.is_none_or(|most| one.cover > most.cover) { Some(one) } else { most }
+            },
+        );
         let own = cover(at).map_or((Vec2::ZERO, 0.0), |one| (one.velocity, one.cover));
         let sources = FoamSources {
             shore: foam.shore,
@@ -200,7 +206,13 @@ impl Twin {
 }
 
 /// Panics unless `gpu` is `cpu` to the accuracy of its 16-bit floats, where it is wet.
-fn assert_same(what: &str, cells: &Cells, gpu: impl Fn(usize) -> f32, cpu: impl Fn(usize) -> f32, wet: impl Fn(usize) -> bool) {
+fn assert_same(
+    what: &str,
+    cells: &Cells,
+    gpu: impl Fn(usize) -> f32,
+    cpu: impl Fn(usize) -> f32,
+    wet: impl Fn(usize) -> bool,
+) {
     let largest = (0..cells.count()).map(|i| cpu(i).abs()).fold(0.0, f32::max);
     assert!(largest > 1e-4, "there is {what} to compare: {largest}");
     for (i, at) in cells.iter().enumerate().filter(|(i, _)| wet(*i)) {
@@ -213,7 +225,8 @@ fn assert_same(what: &str, cells: &Cells, gpu: impl Fn(usize) -> f32, cpu: impl 
 fn the_stages_do_what_their_twins_do() {
     // A shoal in a current that is faster in the middle; 65 × 45 cells, no multiple of a workgroup.
     let bed = WaterBed::from_fn(uvec2(40, 30), 0.5, |p| 0.14 * (p.y.abs() - 4.9) + 0.2 * (p.x * 0.9).sin()).unwrap();
-    let current = Grid::from_fn(uvec2(20, 14), 1.0, |cell: UVec2| vec2(1.5 - 0.03 * (cell.y as f32 - 6.5).powi(2), 0.1));
+    let current =
+        Grid::from_fn(uvec2(20, 14), 1.0, |cell: UVec2| vec2(1.5 - 0.03 * (cell.y as f32 - 6.5).powi(2), 0.1));
     let flow = WaterFlow { uniform: vec2(0.05, -0.1), ..WaterFlow::from_map(current.unwrap()) };
     let train = Wave { direction: vec2(0.3, 1.0), wavelength: 3.0, steepness: 0.3, phase: 0.4 };
     let waves = WaterWaves { trains: vec![train], ..WaterWaves::still() };
@@ -282,7 +295,8 @@ fn dye_is_kept_and_stays_where_it_is_while_the_window_moves() {
     let settings = WaterInteraction { cells: 96, dye_life: 1e6, spreading: 0.01, ..default() };
     let drift = vec2(0.5, -0.25);
     let bed = WaterBed::from_fn(uvec2(60, 60), 2.0, |_| -1.0).unwrap();
-    let mut basin = Basin::new(Vec2::splat(110.0), Some(bed), (WaterWaves::still(), settings, WaterFlow::uniform(drift)));
+    let mut basin =
+        Basin::new(Vec2::splat(110.0), Some(bed), (WaterWaves::still(), settings, WaterFlow::uniform(drift)));
     let pose = Transform::from_xyz(0.0, 8.0, 0.0).looking_to(vec3(0.0, -1.0, -0.1), Vec3::NEG_Z);
     let camera = basin.stage.camera(PerspectiveProjection::default(), pose);
     basin.stage.settle();
@@ -310,7 +324,12 @@ fn dye_is_kept_and_stays_where_it_is_while_the_window_moves() {
     let (to, after) = measure(&mut basin);
     println!("{after} of {before} is left, moved {}", to - from);
     assert!((after / before - 1.0).abs() < 2e-3, "{after} of {before} is left");
-    assert!((to - from).distance(drift * 3.0) < 0.01 * 3.0 * drift.length(), "moved {}, not {}", to - from, drift * 3.0);
+    assert!(
+        (to - from).distance(drift * 3.0) < 0.01 * 3.0 * drift.length(),
+        "moved {}, not {}",
+        to - from,
+        drift * 3.0
+    );
 }
 
 #[test]
@@ -353,7 +372,9 @@ fn rings_have_one_speed_on_coarse_and_fine_cells() {
 #[ignore = "prints costs"]
 fn costs_of_a_frame() {
     for size in [256_u32, 512] {
-        let bed = || WaterBed::from_fn(uvec2(64, 64), size as f32 / 256.0, |p| 0.1 * (p.x.abs() - 0.08 * size as f32)).unwrap();
+        let bed = || {
+            WaterBed::from_fn(uvec2(64, 64), size as f32 / 256.0, |p| 0.1 * (p.x.abs() - 0.08 * size as f32)).unwrap()
+        };
         let half = size as f32 / 8.0;
         for (what, flow, deposits) in [
             ("foam on still water", WaterFlow::default(), false),
@@ -392,7 +413,9 @@ fn every_stage_compiles() {
     let cache = stage.app.sub_app(RenderApp).world().resource::<PipelineCache>();
     let failed: Vec<String> = cache
         .pipelines()
-        .filter_map(|one| if let CachedPipelineState::Err(error) = &one.state { Some(format!("{error}")) } else { None })
+        .filter_map(
+            |one| if let CachedPipelineState::Err(error) = &one.state { Some(format!("{error}")) } else { None },
+        )
         .collect();
     assert!(failed.is_empty(), "{failed:#?}");
     assert!(stages_are_ready(&stage), "all stages are made");

@@ -184,7 +184,8 @@ mod tests {
     #[test]
     fn every_cell_that_a_stroke_reaches_is_in_one_tile_with_it() {
         let window = window(ivec2(-20, -12));
-        let stroke = |x: f32, z: f32| Stroke { place: vec2(x, z), radius: 0.6, volume: 1.0, foam: 0.0, dye: Vec3::ZERO };
+        let stroke =
+            |x: f32, z: f32| Stroke { place: vec2(x, z), radius: 0.6, volume: 1.0, foam: 0.0, dye: Vec3::ZERO };
         let strokes = vec![stroke(0.1, 0.2), stroke(0.4, -0.3), stroke(9.9, 5.9), stroke(-40.0, 0.0)];
         let deposits = Deposits { strokes: strokes.clone(), ..default() };
         let sorted = GpuDeposits::new(&window, &deposits, &mut Drafts::default(), 1.0);
@@ -193,7 +194,8 @@ mod tests {
             let of_cell: Vec<_> = sorted.tiles.iter().filter(|tile| tile.corner == at / 8 * 8).collect();
             assert!(of_cell.len() <= 1);
             let place = window.origin() + (at.as_vec2() + 0.5) * window.cell;
-            for (n, stroke) in strokes.iter().enumerate().filter(|(_, stroke)| stroke.place.distance(place) < 4.0 * 0.6) {
+            for (n, stroke) in strokes.iter().enumerate().filter(|(_, stroke)| stroke.place.distance(place) < 4.0 * 0.6)
+            {
                 let tile = of_cell[0];
                 let in_tile = &sorted.strokes[tile.first as usize..(tile.first + tile.strokes) as usize];
                 assert_eq!(in_tile.iter().filter(|other| other.middle == stroke.place).count(), 1);

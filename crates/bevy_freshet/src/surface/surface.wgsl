@@ -111,9 +111,9 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
         case types::VIEW_NORMAL: { color = normal * 0.5 + 0.5; }
         case types::VIEW_HEIGHT: { color = split(in.world.y - surface.level); }
         case types::VIEW_EDGE: { color = vec3(cover); }
-        case types::VIEW_FOAM: { color = vec3(field.foam); }
-        case types::VIEW_INTERACTION: { color = vec3(field.cover, split(field.height).xy); }
-        case types::VIEW_DYE: { color = field.dye; }
+        case types::VIEW_FOAM: { color = vec3(fields.foam); }
+        case types::VIEW_INTERACTION: { color = vec3(fields.cover, split(fields.height).xy); }
+        case types::VIEW_DYE: { color = fields.dye; }
         default: {}
     }
     return finish(color);
