@@ -1,11 +1,16 @@
 //! Foam on its cells: born where it should be, carried, decaying; and no work while the clock stands still.
-use crate::stage::{Picture, SIZE, Stage};
+use crate::{
+    said::{complaints, run_on_this_thread},
+    stage::{Picture, SIZE, Stage},
+};
 use bevy::{
     diagnostic::{DiagnosticPath, DiagnosticsStore},
     prelude::*,
     render::diagnostic::RenderDiagnosticsPlugin,
+    time::TimeUpdateStrategy,
 };
 use bevy_freshet::prelude::*;
+use core::time::Duration;
 use freshet_hydro::grid::Grid;
 
 /// Width of the picture, m: a pixel is half a cell.
@@ -193,4 +198,51 @@ fn nothing_runs_while_the_clock_stands_still() {
     let running = runs(&mut stage);
     stage.app.world_mut().get_mut::<Transform>(camera).unwrap().translation.x = 9.0;
     assert_eq!(runs(&mut stage), running);
+}
+
+/// What is unusable in the next test's water.
+const UNUSABLE: &str = "
+    WaterInteraction::cell WaterInteraction::cells WaterInteraction::rings WaterInteraction::wavelength
+    WaterInteraction::decay WaterInteraction::spreading WaterInteraction::dye_life
+    WaterFoam::life WaterFoam::shore WaterFoam::shore_depth WaterFoam::shear WaterFoam::shear_threshold
+    WaterFoam::speed WaterFoam::speed_threshold WaterFoam::bodies";
+
+#[test]
+fn unusable_settings_are_named_once_and_the_fields_stay_numbers() {
+    let mut stage = Stage::new();
+    run_on_this_thread(&mut stage.app);
+    lay(&mut stage, |p| -0.1 * (p.x + 12.0));
+    let nan = f32::NAN;
+    let interaction = WaterInteraction {
+        cell: nan,
+        cells: 0,
+        rings: -1.0,
+        wavelength: 0.0,
+        decay: nan,
+        spreading: f32::INFINITY,
+        dye_life: -3.0,
+        ..default()
+    };
+    let sources = WaterFoam {
+        life: 0.0,
+        shore: nan,
+        shore_depth: 0.0,
+        shear: nan,
+        shear_threshold: nan,
+        speed: f32::INFINITY,
+        speed_threshold: -1.0,
+        bodies: nan,
+        ..default()
+    };
+    let (water, camera) = foamy(&mut stage, sources, (interaction, WaterFlow::uniform(vec2(0.5, 0.2))));
+    let said = complaints(&mut stage.app, |app| {
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(20)));
+        (0..30).for_each(|_| app.update());
+    });
+    for field in UNUSABLE.split_whitespace() {
+        let field = format!(" {water}: {field} ");
+        assert_eq!(said.iter().filter(|line| line.contains(&field)).count(), 1, "{field}in {said:#?}");
+    }
+    assert_eq!(said.len(), UNUSABLE.split_whitespace().count(), "{said:#?}");
+    assert!(stage.picture(camera).pixels().all(|(_, color)| color.is_finite() && color.max_element() <= 1.0));
 }

@@ -85,7 +85,11 @@ impl Plugin for SimulationPlugin {
             .configure_sets(
                 PostUpdate,
                 (
-                    WaterSystems::Displace.after(WaterSystems::Resolve).after(TransformSystems::Propagate),
+                    WaterSystems::Displace
+                        .after(WaterSystems::Resolve)
+                        .after(TransformSystems::Propagate)
+                        // The sky tints the fog of the cameras that windows look at.
+                        .after(crate::sky::SkySystems::Fog),
                     (FieldSystems::Window, FieldSystems::Deposit, FieldSystems::Step)
                         .chain()
                         .in_set(WaterSystems::Displace),

@@ -120,18 +120,26 @@ pub(super) fn step_fields(
     mut reported: ResMut<Reported>,
     mut waters: Query<(
         Entity,
-        (&WaterInteraction, &WaterFoam, &ResolvedWater, &FieldWindow, &Deposits),
-        (&mut FieldProgress, &mut FieldPictures, &mut FieldFrame),
+        (&WaterInteraction, &WaterFoam, &ResolvedWater, &FieldWindow),
+        (&mut Deposits, &mut FieldProgress, &mut FieldPictures, &mut FieldFrame),
     )>,
 ) {
-    for (entity, (settings, foam, water, window, deposits), (mut progress, mut pictures, mut frame)) in &mut waters {
+    for (entity, (settings, foam, water, window), fields) in &mut waters {
+        let (mut deposits, mut progress, mut pictures, mut frame) = fields;
         *frame = if window.size == UVec2::ZERO {
             switch_off(&mut progress, &mut pictures, &frame)
         } else {
             progress.resize(window, &mut pictures, &mut images);
             let settings = Settings { entity, interaction: settings, foam, water, window };
-            let work =
-                progress.advance(&settings, deposits, &pictures, time.delta(), &mut ground, &mut images, &mut reported);
+            let work = progress.advance(
+                &settings,
+                &mut deposits,
+                &pictures,
+                time.delta(),
+                &mut ground,
+                &mut images,
+                &mut reported,
+            );
             work.map_or(FieldFrame::Idle, |work| FieldFrame::Work(Box::new(work)))
         };
     }
@@ -172,7 +180,7 @@ impl FieldProgress {
     fn advance(
         &mut self,
         settings: &Settings,
-        deposits: &Deposits,
+        deposits: &mut Deposits,
         pictures: &FieldPictures,
         delta: Duration,
         textures: &mut GroundTextures,
@@ -180,9 +188,9 @@ impl FieldProgress {
         reported: &mut Reported,
     ) -> Option<FieldWork> {
         let (mut work, parts, moved) = self.prepare(settings, pictures, textures, images, reported)?;
-        let over = (self.strokes.len() + deposits.strokes.len()).saturating_sub(MOST_STROKES);
-        self.strokes.extend_from_slice(&deposits.strokes);
-        self.strokes.drain(..over.min(self.strokes.len()));
+        // Taken, lest a stroke that nobody clears counts again.
+        self.strokes.append(&mut deposits.strokes);
+        self.strokes.drain(..self.strokes.len().saturating_sub(MOST_STROKES));
         // Until the stages have been made and the pictures are drawn, the clock stands still.
         if self.drawn.load(Ordering::Relaxed) < self.generation {
             return Some(work);
