@@ -8,6 +8,7 @@ mod stage;
 mod buoyancy;
 #[cfg(feature = "rapier")]
 mod endurance;
+mod fields;
 mod flow;
 mod glitter;
 mod light;

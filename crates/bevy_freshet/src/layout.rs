@@ -28,7 +28,11 @@ where
     T: ShaderType<ExtraMetadata = StructMetadata<N>> + Typed,
 {
     let fields = T::type_info().as_struct().expect("a struct is asked for");
-    let kind = |path: &str| if path.contains("u32") { ScalarKind::Uint } else { ScalarKind::Float };
+    let kind = |path: &str| match path {
+        path if path.contains("u32") || path.contains("UVec") => ScalarKind::Uint,
+        path if path.contains("i32") || path.contains("IVec") => ScalarKind::Sint,
+        _ => ScalarKind::Float,
+    };
     fields
         .iter()
         .zip(T::METADATA.extra.offsets)

@@ -5,6 +5,10 @@
 //!
 //! SI units throughout; y is up and the still surface is level.
 
+// The scene of the integration tests serves unit tests as well.
+#[cfg(test)]
+extern crate self as bevy_freshet;
+
 pub mod bed;
 pub mod body;
 #[cfg(feature = "rapier")]
@@ -61,7 +65,12 @@ impl Plugin for WaterPlugin {
         #[cfg(feature = "rapier")]
         app.add_plugins(buoyancy::BuoyancyPlugin);
         if app.get_sub_app(RenderApp).is_some() {
-            app.add_plugins((surface::SurfacePlugin, reflection::ReflectionPlugin, bed::BedPlugin));
+            app.add_plugins((
+                surface::SurfacePlugin,
+                reflection::ReflectionPlugin,
+                bed::BedPlugin,
+                simulation::SimulationPlugin,
+            ));
         }
     }
 

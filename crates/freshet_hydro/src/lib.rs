@@ -3,6 +3,7 @@
 //! Everything is in SI units and in the plugin's frame: right-handed, y up, the still surface in the xz plane. On
 //! rasters column 0 is west (smallest x) and row 0 is north (smallest z).
 
+pub mod fields;
 pub mod fill;
 pub mod flow;
 pub mod grid;

@@ -1,10 +1,17 @@
 //! Which part of a water is simulated.
+use crate::{
+    body::{ResolvedWater, WaterInteraction},
+    report::Reported,
+    simulation::progress::{FieldFrame, FieldProgress},
+    surface::Viewers,
+};
 use bevy::prelude::*;
 
 /// A rectangle of square cells that lies on a water, in whole cells from the water's centre.
 ///
 /// The window moves in whole cells, so that what is in a cell stays where it is on the water.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
+#[require(FieldProgress, FieldFrame)]
 pub(crate) struct FieldWindow {
     /// The cell in the north-west corner; cell (0, 0) has its own north-west corner in the water's centre.
     pub first: IVec2,
@@ -13,6 +20,13 @@ pub(crate) struct FieldWindow {
     /// Size of a cell, m.
     pub cell: f32,
 }
+
+/// Fewest cells along an axis of a window.
+const FEWEST: f32 = 16.0;
+/// Step of a window that follows the camera, cells.
+const SNAP: f32 = 8.0;
+/// How far ahead of the camera the middle of the window is, in lengths of the window.
+const AHEAD: f32 = 0.35;
 
 impl FieldWindow {
     /// Local xz of the north-west corner, m.
@@ -28,5 +42,71 @@ impl FieldWindow {
     /// Size along local x and z, m.
     pub fn extent(&self) -> Vec2 {
         self.size.as_vec2() * self.cell
+    }
+
+    /// The window of a water of `half_size` (m) with cells of `cell` (m), at most `cells` along an axis: all of the water
+    /// if it fits, else around local `middle` as far as the water reaches.
+    fn around(middle: Vec2, half_size: Vec2, cell: f32, cells: f32) -> Self {
+        // Water of few cells gets finer ones.
+        let cell = cell.min(2.0 * half_size.min_element() / FEWEST);
+        // A hair less, lest a water of whole cells gets one more by rounding.
+        let reach = (half_size / cell - 1e-3).ceil().max(Vec2::ONE);
+        let size = (2.0 * reach).min(Vec2::splat(cells));
+        let first = ((middle / cell - 0.5 * size) / SNAP).round() * SNAP;
+        let first = first.clamp(-reach, reach - size);
+        Self { first: first.as_ivec2(), size: size.as_uvec2(), cell }
+    }
+}
+
+/// Chooses the window of every water: what the first camera looks at, if not all of it fits.
+pub(super) fn place_windows(
+    mut reported: ResMut<Reported>,
+    viewers: Viewers,
+    mut waters: Query<(Entity, &WaterInteraction, &ResolvedWater, &mut FieldWindow)>,
+) {
+    let eye = viewers.iter().next().map(|viewer| *viewer.pose);
+    for (entity, settings, water, mut window) in &mut waters {
+        let usable = WaterInteraction::default();
+        let mut clamp = |field, value, range, fallback| reported.clamp(entity, field, value, range, fallback);
+        let cell = clamp("WaterInteraction::cell", settings.cell, 0.01..=100.0, usable.cell);
+        let cells = clamp("WaterInteraction::cells", settings.cells as f32, FEWEST..=2048.0, usable.cells as f32);
+        let wanted = if settings.enabled && water.half_size != Vec2::ZERO {
+            let ahead = |eye: GlobalTransform| {
+                let way = AHEAD * cells * cell * eye.forward().xz();
+                water.local_from_world.transform_point2(eye.translation().xz() + way)
+            };
+            FieldWindow::around(eye.map_or(Vec2::ZERO, ahead), water.half_size, cell, cells)
+        } else {
+            FieldWindow::default()
+        };
+        window.set_if_neq(wanted);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_water_that_fits_is_simulated_as_a_whole() {
+        let window = FieldWindow::around(vec2(7.0, 3.0), vec2(10.0, 5.1), 0.25, 512.0);
+        assert_eq!(window, FieldWindow { first: ivec2(-40, -21), size: uvec2(80, 42), cell: 0.25 });
+        assert_eq!(window.cells_from_place(window.origin()), Vec2::ZERO);
+        // However small it is.
+        let puddle = FieldWindow::around(Vec2::ZERO, vec2(0.4, 1.0), 0.25, 512.0);
+        assert_eq!(puddle.size, uvec2(16, 40));
+    }
+
+    #[test]
+    fn a_window_of_large_water_stays_on_it_and_moves_in_steps() {
+        let at = |x: f32, z: f32| FieldWindow::around(vec2(x, z), vec2(500.0, 300.0), 0.25, 256.0);
+        for (x, z) in [(0.0, 0.0), (13.2, -99.0), (499.0, 299.0), (-1e6, 1e6)] {
+            let window = at(x, z);
+            assert_eq!(window.size, UVec2::splat(256));
+            let (first, last) = (window.origin(), window.origin() + window.extent());
+            assert!(first.cmpge(vec2(-500.0, -300.0)).all() && last.cmple(vec2(500.0, 300.0)).all(), "{window:?}");
+        }
+        assert_eq!(at(0.0, 0.0), at(0.9, -0.9));
+        assert_eq!(at(2.0, 0.0).first - at(0.0, 0.0).first, ivec2(8, 0));
     }
 }

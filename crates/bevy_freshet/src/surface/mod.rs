@@ -15,9 +15,12 @@ mod viewer;
 mod views;
 mod write;
 
+pub(crate) use gpu::GpuSurface;
 pub(crate) use ripples::advance_ripples;
+pub(crate) use sync::GroundTextures;
 pub use viewer::NoWater;
 pub(crate) use viewer::{ViewerData, Viewers};
+pub(crate) use write::{write_ground, write_water};
 
 use crate::schedule::WaterSystems;
 use bevy::{

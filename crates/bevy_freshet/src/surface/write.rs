@@ -67,7 +67,7 @@ pub(super) fn write_surfaces(
         write_frame(&mut gpu, resolved, shape, &viewer);
         write_optics(&mut gpu, entity, optics, &mut reported);
         write_detail(&mut gpu, entity, settings, ripples, &mut reported);
-        write_ground(&mut gpu, &mut textures, resolved, &mut ground, &mut images);
+        (textures.bed, textures.flow) = write_ground(&mut gpu, resolved, &mut ground, &mut images);
         write_mirror(&mut gpu, &mut textures, entity, reflection, resolved, &viewer, &mirrors, &mut reported);
         write_field(&mut gpu, window, pictures);
         write_foam(&mut gpu, entity, foam, ripples, &mut reported);
@@ -107,14 +107,19 @@ struct Textures {
 }
 
 fn write_frame(gpu: &mut GpuSurface, water: &ResolvedWater, shape: &SurfaceShape, viewer: &ViewerData) {
-    gpu.world_from_local = water.world_from_local.matrix2;
-    gpu.world_origin = water.world_from_local.translation;
-    gpu.half_size = water.half_size;
-    gpu.level = water.level;
+    write_water(gpu, water);
     let eye = water.local_from_world.transform_point2(viewer.pose.translation().xz());
     gpu.mesh_center = shape.center(eye, water.half_size);
     gpu.mesh_cell = shape.cell;
     gpu.mesh_reach = shape.cell * shape.cells as f32 * 0.5;
+}
+
+/// Frame and waves of the water, whoever looks at it.
+pub(crate) fn write_water(gpu: &mut GpuSurface, water: &ResolvedWater) {
+    gpu.world_from_local = water.world_from_local.matrix2;
+    gpu.world_origin = water.world_from_local.translation;
+    gpu.half_size = water.half_size;
+    gpu.level = water.level;
     gpu.fade_depth = water.fade_depth;
     gpu.wave_count = water.waves.trains.len() as u32;
     for (slot, train) in gpu.waves.iter_mut().zip(&water.waves.trains) {
@@ -178,13 +183,14 @@ fn write_detail(
     };
 }
 
-fn write_ground(
+/// Bed and current of the water, and their textures.
+pub(crate) fn write_ground(
     gpu: &mut GpuSurface,
-    textures: &mut Textures,
     water: &ResolvedWater,
     ground: &mut GroundTextures,
     images: &mut Assets<Image>,
-) {
+) -> (Option<Handle<Image>>, Option<Handle<Image>>) {
+    let (mut bed_texture, mut flow_texture) = (None, None);
     if let Some(bed) = &water.bed {
         gpu.flags |= GpuSurface::BED;
         gpu.bed_from_local = bed.bed_from_local.matrix2;
@@ -192,7 +198,7 @@ fn write_ground(
         gpu.bed_size = bed.elevations.size().as_vec2();
         gpu.bed_cell = bed.elevations.cell_size();
         gpu.bed_base = bed.base;
-        textures.bed = Some(ground.bed(&bed.elevations, images));
+        bed_texture = Some(ground.bed(&bed.elevations, images));
     }
     gpu.current_drift = water.drift;
     if let Some((map, scale)) = &water.flow {
@@ -203,8 +209,9 @@ fn write_ground(
         gpu.bank_depth = WaterFlow::BANK_DEPTH;
         // The factor is folded into the time that the map's velocity acts.
         gpu.flow_cycle *= scale;
-        textures.flow = Some(ground.flow(map, images));
+        flow_texture = Some(ground.flow(map, images));
     }
+    (bed_texture, flow_texture)
 }
 
 fn write_mirror(
