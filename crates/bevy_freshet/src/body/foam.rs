@@ -10,19 +10,19 @@ use bevy::prelude::*;
 pub struct WaterFoam {
     /// Factor on the drawn cover, 0…1. Default 1; 0 draws none.
     pub amount: f32,
-    /// Time in which foam decays to 1/e, s, 0.1…1000. Default 6.
+    /// Time in which foam decays to 1/e, s, 0.1…1000. Default 8.
     pub life: f32,
-    /// Foam born at the waterline, 1/s, 0…10. Default 0.15.
+    /// Foam born at the waterline, 1/s, 0…10. Default 0.3.
     pub shore: f32,
-    /// Depth of the still water below which the shore makes foam, m, 0.01…10. Default 0.15.
+    /// Depth of the still water below which the shore makes foam, m, 0.01…10. Default 0.2.
     pub shore_depth: f32,
     /// Foam born in sheared flow, per unit of shear (1/s per 1/s), 0…10. Default 0.2.
     pub shear: f32,
-    /// Shear below which none is born, 1/s, 0…100. Default 0.25.
+    /// Shear below which none is born, 1/s, 0…100. Default 0.13.
     pub shear_threshold: f32,
-    /// Foam born in fast flow, 1/s for each m/s above the threshold, 0…10. Default 0.1.
+    /// Foam born in fast flow, 1/s for each m/s above the threshold, 0…10. Default 0.12.
     pub speed: f32,
-    /// Speed below which none is born, m/s, 0…100. Default 1.2.
+    /// Speed below which none is born, m/s, 0…100. Default 0.85.
     pub speed_threshold: f32,
     /// Foam born around bodies, 1/s for each m/s between body and water, 0…10. Default 1.
     pub bodies: f32,
@@ -36,13 +36,13 @@ impl Default for WaterFoam {
     fn default() -> Self {
         Self {
             amount: 1.0,
-            life: 6.0,
-            shore: 0.15,
-            shore_depth: 0.15,
+            life: 8.0,
+            shore: 0.3,
+            shore_depth: 0.2,
             shear: 0.2,
-            shear_threshold: 0.25,
-            speed: 0.1,
-            speed_threshold: 1.2,
+            shear_threshold: 0.13,
+            speed: 0.12,
+            speed_threshold: 0.85,
             bodies: 1.0,
             pattern_size: 1.5,
             albedo: LinearRgba::rgb(0.75, 0.77, 0.76),

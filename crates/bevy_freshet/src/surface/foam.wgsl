@@ -10,21 +10,32 @@ const STREAK: f32 = 0.22;
 // Deviation of the variate over which foam turns from none to closed at a wall of bubbles.
 const SOFTNESS: f32 = 0.35;
 
-// The variate of the foam tile and what a pixel hides of its variance, at `place` (local xz, m) and drawn out along
-// `streak` (m).
+// Foam gathers to patches: the tile again, turned and larger, with this share of the variance. It hides that the tile
+// repeats.
+const PATCHES: f32 = 0.5;
+const PATCH: mat2x2<f32> = mat2x2<f32>(vec2(0.1171, 0.0603), vec2(-0.0603, 0.1171));
+
+// The variate of the foam tile and what a pixel hides of its variance.
+fn texel(at: vec2<f32>, footprint: Footprint) -> vec2<f32> {
+    let value = textureSampleGrad(foam, detail_sampler, at, footprint.x, footprint.y).xy;
+    return vec2(value.x, max(value.y - value.x * value.x, 0.0));
+}
+
+// Variate and hidden variance at `place` (local xz, m), drawn out along `streak` (m).
 fn froth(place: vec2<f32>, streak: vec2<f32>, footprint: Footprint) -> vec2<f32> {
     let scale = surface.foam_scale;
-    var mean = 0.0;
-    var hidden = 0.0;
+    let within = Footprint(footprint.x * scale, footprint.y * scale);
+    let middle = place * scale - surface.foam_drift;
+    var drawn = vec2(0.0);
     for (var i = 0; i < 4; i++) {
-        let at = (place + streak * (f32(i) - 1.5)) * scale - surface.foam_drift;
-        let texel = textureSampleGrad(foam, detail_sampler, at, footprint.x * scale, footprint.y * scale).xy;
-        mean += 0.25 * texel.x;
-        hidden += 0.25 * max(texel.y - texel.x * texel.x, 0.0);
+        drawn += 0.25 * texel(middle + streak * (scale * (f32(i) - 1.5)), within);
     }
     // Four samples that know nothing of each other have half the deviation of one.
     let apart = smoothstep(0.0, 0.08, length(streak) * scale);
-    return vec2(mean * (1.0 + apart), hidden);
+    let turned = Footprint(PATCH * within.x, PATCH * within.y);
+    let patches = texel(PATCH * place * scale - PATCH * surface.foam_drift, turned);
+    let mean = sqrt(1.0 - PATCHES) * drawn.x * (1.0 + apart) + sqrt(PATCHES) * patches.x;
+    return vec2(mean, (1.0 - PATCHES) * drawn.y + PATCHES * patches.y);
 }
 
 // Φ of the normal distribution (Page 1977).
