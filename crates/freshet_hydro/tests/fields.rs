@@ -254,8 +254,8 @@ fn dye_and_foam_are_kept_and_move_with_the_flow() {
     }
     let ratio = transport.total() / before;
     assert!((ratio - 1.0).abs().max_element() < 1e-4, "{ratio} is left");
-    for channel in 0..4 {
-        let moved = centroid(&transport, channel) - from[channel];
+    for (channel, from) in from.iter().enumerate() {
+        let moved = centroid(&transport, channel) - *from;
         assert!(moved.distance(velocity * 10.0) < 0.01 * 10.0 * velocity.length(), "channel {channel} moved {moved} m");
     }
     let peak = transport.matter.iter().map(|matter| matter.x).fold(0.0, f32::max);

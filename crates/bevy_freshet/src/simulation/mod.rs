@@ -16,6 +16,7 @@
 //!
 //! Schemes and formulas are those of [`freshet_hydro::fields`], which holds the same on the CPU.
 mod deposits;
+mod frame;
 mod numbers;
 mod plan;
 mod progress;
@@ -81,7 +82,7 @@ impl Plugin for SimulationPlugin {
         embedded_asset!(app, "transport.wgsl");
         embedded_asset!(app, "compose.wgsl");
 
-        app.add_plugins(ExtractComponentPlugin::<progress::FieldFrame>::default())
+        app.add_plugins(ExtractComponentPlugin::<frame::FieldFrame>::default())
             .configure_sets(
                 PostUpdate,
                 (

@@ -1,6 +1,6 @@
 //! Which stages run in a frame, in which order, on which buffers.
 use super::{
-    progress::{FieldFrame, FieldWork},
+    frame::{FieldFrame, FieldWork},
     stages::{Stage, Stages},
     state::FieldState,
     tiles::TILE,

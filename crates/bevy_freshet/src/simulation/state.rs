@@ -1,8 +1,8 @@
 //! The state of a water's fields on the GPU.
 use super::{
     FieldWindow,
+    frame::FieldWork,
     numbers::GpuNumbers,
-    progress::FieldWork,
     tiles::{GpuSilhouette, GpuStroke, GpuTile},
 };
 use crate::surface::GpuSurface;

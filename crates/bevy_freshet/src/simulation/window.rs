@@ -2,7 +2,7 @@
 use crate::{
     body::{ResolvedWater, WaterInteraction},
     report::Reported,
-    simulation::progress::{FieldFrame, FieldProgress},
+    simulation::{frame::FieldFrame, progress::FieldProgress},
     surface::Viewers,
 };
 use bevy::prelude::*;
