@@ -11,7 +11,7 @@ pub fn run(args: Vec<OsString>) -> Result<ExitCode> {
     setup::run()?;
     let status = command::status(
         command::cargo()
-            .args(["run", "--package", "bevy_freshet", "--example", "river", "--"])
+            .args(["run", "--package", "bevy_freshet", "--features", "panel", "--example", "river", "--"])
             .args(with_output(args, setup::has_display())),
     )?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());
