@@ -37,7 +37,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     if !cfg!(target_os = "linux") || !["Xvfb", "xdotool"].into_iter().all(is_there) {
-        println!("the panel in a window: skipped, as it needs Xvfb and xdotool (`cargo xtask setup` installs them)");
+        println!("the panel in a window: skipped, as it needs Xvfb and xdotool (`cargo xtask test` installs them)");
         return ExitCode::SUCCESS;
     }
     let (mut server, display) = start_server();
