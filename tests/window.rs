@@ -10,9 +10,10 @@ use bevy::{
     render::view::screenshot::{Screenshot, ScreenshotCaptured},
     window::WindowResolution,
 };
-use bevy_egui::PrimaryEguiContext;
+use bevy_egui::{PrimaryEguiContext, input::EguiWantsInput};
 use bevy_freshet::{panel::*, prelude::*, reflection::MirrorCamera};
 use std::{
+    collections::VecDeque,
     env,
     path::Path,
     process::{Child, Command, ExitCode, Stdio},
@@ -23,7 +24,7 @@ use std::{
 /// Pixels of the window.
 const SIZE: UVec2 = UVec2::new(640, 360);
 /// Longest time for the whole script.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_secs(240);
 /// Tells the process that it is the one with the window.
 const INSIDE: &str = "FRESHET_WINDOW_TEST";
 
@@ -36,7 +37,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     if !cfg!(target_os = "linux") || !["Xvfb", "xdotool"].into_iter().all(is_there) {
-        println!("the panel in a window: skipped, as it needs Xvfb and xdotool (`cargo xtask setup` installs them)");
+        println!("the panel in a window: skipped, as it needs Xvfb and xdotool (`cargo xtask test` installs them)");
         return ExitCode::SUCCESS;
     }
     let (mut server, display) = start_server();
@@ -90,7 +91,7 @@ fn inside() -> ExitCode {
             WaterPanelPlugin::default(),
         ))
         .insert_resource(ClearColor(Color::srgb(0.5, 0.7, 0.9)))
-        .insert_resource(Script { step: 0, frames: 0, start: Instant::now(), pictures: Vec::new() })
+        .insert_resource(Script { step: 0, start: Instant::now(), inputs: default(), calm: 0, pictures: Vec::new() })
         .add_systems(Startup, setup)
         .add_systems(Update, run_script)
         .run();
@@ -126,92 +127,103 @@ fn setup(mut commands: Commands, mut images: ResMut<Assets<Image>>) {
 #[derive(Resource)]
 struct Script {
     step: usize,
-    /// Frames since the step began.
-    frames: u32,
     start: Instant,
+    /// Arguments of xdotool, one call after the other.
+    inputs: VecDeque<Vec<String>>,
+    /// Frames since the last input.
+    calm: u32,
     pictures: Vec<Image>,
 }
 
-/// Frames after which the effect of an input is looked for: events come one frame late, a pipeline some frames.
-const WAIT: u32 = 12;
+/// Frames between inputs, so that the panel sees each of them by itself.
+const GAP: u32 = 3;
+/// Frames after which the effect of an input is looked for: groups open and close with an animation that moves what is
+/// below, and a pipeline may have to be compiled.
+const SETTLE: u32 = 10;
 
-/// What is done and expected, one step after the other.
+/// What is done and expected, one step after the other. A step is asked again until what it waits for is there.
+const STEPS: [fn(&mut World, &mut Script) -> Option<()>; 10] = [
+    |world, script| {
+        // The window may not be on the screen yet when its first frames are drawn.
+        (script.start.elapsed() > Duration::from_secs(2)).then_some(())?;
+        let switches = place(world, "Switches")?;
+        assert_context_is_on_window(world);
+        script.click(switches.center());
+        Some(())
+    },
+    |world, _| place(world, "reflection").map(|_| take_picture(world)),
+    // A tick with the pointer: the reflection goes out of the picture.
+    |world, script| {
+        (script.pictures.len() == 1).then_some(())?;
+        assert_eq!(reflectivity(world), 1.0);
+        let tick = place(world, "reflection")?;
+        script.click(tick.min + vec2(8.0, 0.5 * tick.height()));
+        Some(())
+    },
+    |world, _| (reflectivity(world) == 0.0).then(|| take_picture(world)),
+    // The group is closed again, so that the slider is in sight.
+    |world, script| {
+        (script.pictures.len() == 2).then_some(())?;
+        assert_picture_changed(&script.pictures[0], &script.pictures[1]);
+        save(&script.pictures[1]);
+        script.click(place(world, "Switches")?.center());
+        Some(())
+    },
+    |world, script| {
+        place(world, "reflection").is_none().then_some(())?;
+        script.click(place(world, "Optics")?.center());
+        Some(())
+    },
+    |world, script| {
+        let slider = place(world, "Reflectivity")?;
+        let at = |x: f32| slider.min + vec2(x, 0.5 * slider.height());
+        script.drag(at(4.0), at(104.0));
+        Some(())
+    },
+    |world, _| (reflectivity(world) > 0.8).then(|| take_picture(world)),
+    |world, script| {
+        (script.pictures.len() == 3).then_some(())?;
+        assert_picture_changed(&script.pictures[1], &script.pictures[2]);
+        script.key("F1");
+        Some(())
+    },
+    // Hidden, it takes no input.
+    |world, _| {
+        (!world.resource::<WaterPanel>().visible).then_some(())?;
+        assert!(place(world, "Optics").is_none());
+        let egui = world.resource::<EguiWantsInput>();
+        assert!(!egui.wants_any_input(), "{egui:?}");
+        Some(())
+    },
+];
+
+/// Hands out the inputs one by one, and goes through the steps.
 fn run_script(world: &mut World) {
     world.resource_scope(|world, mut script: Mut<Script>| {
         assert!(script.start.elapsed() < PATIENCE, "step {} does not end", script.step);
-        script.frames += 1;
-        let panel = world.resource::<WaterPanel>();
-        let done = match script.step {
-            // The panel is there, over the camera of the window alone.
-            0 => {
-                script.frames > WAIT && panel.place("reflection").or(panel.place("View")).is_some() && {
-                    assert_context_is_on_window(world);
-                    click(header("Switches", world), 1);
-                    true
-                }
-            }
-            1 => script.frames > WAIT && panel.place("reflection").is_some() && take_picture(world),
-            // A tick with the pointer: the reflection goes out of the picture.
-            2 => {
-                script.pictures.len() == 1 && {
-                    assert_eq!(reflectivity(world), 1.0);
-                    let place = world.resource::<WaterPanel>().place("reflection").unwrap();
-                    click(place.min + vec2(8.0, 0.5 * place.height()), 1);
-                    true
-                }
-            }
-            3 => script.frames > WAIT && reflectivity(world) == 0.0 && take_picture(world),
-            4 => {
-                script.pictures.len() == 2 && {
-                    assert_picture_changed(&script.pictures[0], &script.pictures[1]);
-                    save(&script.pictures[1]);
-                    // The group is closed again, so that the slider is in sight.
-                    click(header("Switches", world), 1);
-                    true
-                }
-            }
-            5 => {
-                script.frames > WAIT && panel.place("reflection").is_none() && {
-                    click(header("Optics", world), 1);
-                    true
-                }
-            }
-            6 => {
-                script.frames > WAIT && panel.place("Reflectivity").is_some() && {
-                    let place = panel.place("Reflectivity").unwrap();
-                    drag(place.min + vec2(4.0, 0.5 * place.height()), place.min + vec2(104.0, 0.5 * place.height()));
-                    true
-                }
-            }
-            7 => script.frames > WAIT && reflectivity(world) > 0.8 && take_picture(world),
-            8 => {
-                script.pictures.len() == 3 && {
-                    assert_picture_changed(&script.pictures[1], &script.pictures[2]);
-                    key("F1");
-                    true
-                }
-            }
-            // Hidden, it takes no input.
-            9 => {
-                script.frames > WAIT && !panel.visible && {
-                    assert!(panel.place("View").is_none());
-                    let egui = world.resource::<bevy_egui::input::EguiWantsInput>();
-                    assert!(!egui.wants_any_input(), "{egui:?}");
-                    key("F1");
-                    true
-                }
-            }
-            10 => script.frames > WAIT && panel.visible && panel.place("View").is_some(),
-            _ => {
-                println!("the panel in a window: {:.1} s", script.start.elapsed().as_secs_f32());
-                world.write_message(AppExit::Success);
-                false
-            }
+        script.calm += 1;
+        if script.calm >= GAP
+            && let Some(input) = script.inputs.pop_front()
+        {
+            xdotool(&input);
+            script.calm = 0;
+        }
+        if script.calm < SETTLE || !script.inputs.is_empty() {
+            return;
+        }
+        let Some(step) = STEPS.get(script.step) else {
+            println!("the panel in a window: {:.1} s", script.start.elapsed().as_secs_f32());
+            world.write_message(AppExit::Success);
+            return;
         };
-        if done {
-            (script.step, script.frames) = (script.step + 1, 0);
+        if step(world, &mut script).is_some() {
+            (script.step, script.calm) = (script.step + 1, 0);
         }
     });
+}
+
+fn place(world: &World, label: &str) -> Option<Rect> {
+    world.resource::<WaterPanel>().place(label)
 }
 
 fn assert_context_is_on_window(world: &mut World) {
@@ -222,58 +234,54 @@ fn assert_context_is_on_window(world: &mut World) {
     assert_eq!(mirrors.iter(world).count(), 1, "there is a mirror that could have been taken");
 }
 
-fn header(title: &str, world: &World) -> Vec2 {
-    let place = world.resource::<WaterPanel>().place(title);
-    place.unwrap_or_else(|| panic!("{title} is not in sight")).center()
-}
-
 fn reflectivity(world: &mut World) -> f32 {
     world.query::<&WaterOptics>().single(world).unwrap().reflectivity
 }
 
-fn xdotool(args: &[&str]) {
+fn xdotool(args: &[String]) {
     assert!(Command::new("xdotool").args(args).status().unwrap().success(), "{args:?}");
 }
 
-fn point(place: Vec2) {
-    xdotool(&["mousemove", &place.x.round().to_string(), &place.y.round().to_string()]);
-}
+impl Script {
+    fn input(&mut self, args: &[&str]) {
+        self.inputs.push_back(args.iter().map(ToString::to_string).collect());
+    }
 
-/// Moves there and clicks. Egui must see the pointer before the button.
-fn click(place: Vec2, button: u32) {
-    point(place);
-    let button = button.to_string();
-    std::thread::spawn(move || {
-        sleep(Duration::from_millis(700));
-        xdotool(&["mousedown", &button]);
-        sleep(Duration::from_millis(500));
-        xdotool(&["mouseup", &button]);
-    });
-}
+    fn point(&mut self, place: Vec2) {
+        self.input(&["mousemove", &place.x.round().to_string(), &place.y.round().to_string()]);
+    }
 
-fn drag(from: Vec2, to: Vec2) {
-    point(from);
-    std::thread::spawn(move || {
-        sleep(Duration::from_millis(700));
-        xdotool(&["mousedown", "1"]);
-        for i in 1..=5 {
-            sleep(Duration::from_millis(200));
-            point(from.lerp(to, i as f32 / 5.0));
+    /// Goes to a place. A pointer that already is there would send no event.
+    fn approach(&mut self, place: Vec2) {
+        self.point(place - vec2(0.0, 3.0));
+        self.point(place);
+    }
+
+    fn click(&mut self, place: Vec2) {
+        self.approach(place);
+        // Press and release at once: what takes longer than 0.8 s is no click, however slow the frames are.
+        self.input(&["click", "1"]);
+    }
+
+    fn drag(&mut self, from: Vec2, to: Vec2) {
+        self.approach(from);
+        self.input(&["mousedown", "1"]);
+        for i in 1..=4 {
+            self.point(from.lerp(to, i as f32 / 4.0));
         }
-        sleep(Duration::from_millis(300));
-        xdotool(&["mouseup", "1"]);
-    });
+        self.input(&["mouseup", "1"]);
+    }
+
+    /// Without a window manager nobody gives the window the keyboard.
+    fn key(&mut self, name: &str) {
+        self.input(&["search", "--name", "^panel$", "windowfocus", "key", name]);
+    }
 }
 
-fn key(name: &str) {
-    xdotool(&["key", name]);
-}
-
-fn take_picture(world: &mut World) -> bool {
+fn take_picture(world: &mut World) {
     world.spawn(Screenshot::primary_window()).observe(
         |captured: On<ScreenshotCaptured>, mut script: ResMut<Script>| script.pictures.push(captured.image.clone()),
     );
-    true
 }
 
 /// The water, right of the panel in the lower half, must have changed; the sky above must not.

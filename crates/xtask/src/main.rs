@@ -43,7 +43,7 @@ enum Task {
 fn main() -> Result<ExitCode> {
     match Xtask::parse().task {
         Task::Setup => {
-            if setup::run()? == setup::Outcome::AlreadyComplete {
+            if setup::run(setup::Purpose::Run)? == setup::Outcome::AlreadyComplete {
                 println!("Everything is there; nothing to do.");
             }
         }

@@ -8,10 +8,10 @@ use crate::{command, setup};
 
 /// Sets the machine up and runs the river example with `args`; its exit code becomes this command's.
 pub fn run(args: Vec<OsString>) -> Result<ExitCode> {
-    setup::run()?;
+    setup::run(setup::Purpose::Run)?;
     let status = command::status(
         command::cargo()
-            .args(["run", "--package", "bevy_freshet", "--example", "river", "--"])
+            .args(["run", "--package", "bevy_freshet", "--features", "panel", "--example", "river", "--"])
             .args(with_output(args, setup::has_display())),
     )?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());

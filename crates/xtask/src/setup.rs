@@ -15,7 +15,7 @@ use std::{
 
 use anyhow::{Context, Result, bail};
 
-pub use self::machine::has_display;
+pub use self::machine::{Purpose, has_display};
 use self::{
     machine::{Machine, Rights},
     plan::{Plan, Step},
@@ -32,9 +32,9 @@ pub enum Outcome {
     Advised,
 }
 
-/// Installs what is missing, or says how to.
-pub fn run() -> Result<Outcome> {
-    let machine = Machine::look();
+/// Installs what is missing for a purpose, or says how to.
+pub fn run(purpose: Purpose) -> Result<Outcome> {
+    let machine = Machine::look(purpose);
     let Some(plan) = plan::plan(&machine) else {
         return Ok(Outcome::AlreadyComplete);
     };
@@ -42,7 +42,7 @@ pub fn run() -> Result<Outcome> {
         println!("setup: {lack}");
     }
     if machine.system.is_debian_like() && machine.rights != Rights::None {
-        install(&plan, machine.rights)?;
+        install(&plan, machine.rights, purpose)?;
         Ok(Outcome::Installed)
     } else {
         advise(&plan);
@@ -50,7 +50,7 @@ pub fn run() -> Result<Outcome> {
     }
 }
 
-fn install(plan: &Plan, rights: Rights) -> Result<()> {
+fn install(plan: &Plan, rights: Rights, purpose: Purpose) -> Result<()> {
     println!("setup: installing it with");
     for step in &plan.steps {
         println!("    {}", step.shell(rights));
@@ -58,7 +58,7 @@ fn install(plan: &Plan, rights: Rights) -> Result<()> {
     for step in &plan.steps {
         carry_out(step, rights)?;
     }
-    match plan::plan(&Machine::look()) {
+    match plan::plan(&Machine::look(purpose)) {
         None => println!("setup: done"),
         Some(rest) => bail!("these commands succeeded, yet {}", rest.lacks[0]),
     }

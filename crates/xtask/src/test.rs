@@ -55,7 +55,7 @@ impl Step {
 
 /// Sets the machine up and runs each step, up to the first that fails.
 pub fn run() -> Result<()> {
-    setup::run()?;
+    setup::run(setup::Purpose::Test)?;
     let mut took = Vec::new();
     for step in &STEPS {
         println!("\n== {}: {}", step.name, step.line());

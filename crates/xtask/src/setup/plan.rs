@@ -33,6 +33,8 @@ pub enum Lack {
     NewerMesa(String),
     /// Libraries that a window needs.
     Window(Vec<&'static str>),
+    /// Programs that the tests need.
+    Tests(Vec<&'static str>),
 }
 
 impl fmt::Display for Lack {
@@ -43,6 +45,7 @@ impl fmt::Display for Lack {
                 write!(f, "the software driver of Mesa {version} is slow and crashes on some compute shaders")
             }
             Self::Window(libraries) => write!(f, "a window needs {}", libraries.join(", ")),
+            Self::Tests(programs) => write!(f, "the test of the panel needs {}", programs.join(", ")),
         }
     }
 }
@@ -93,6 +96,9 @@ fn lacks(machine: &Machine) -> Vec<Lack> {
     if !machine.missing_window_libraries.is_empty() {
         lacks.push(Lack::Window(machine.missing_window_libraries.clone()));
     }
+    if !machine.missing_test_programs.is_empty() {
+        lacks.push(Lack::Tests(machine.missing_test_programs.clone()));
+    }
     lacks
 }
 
@@ -107,7 +113,7 @@ fn steps(machine: &Machine, lacks: &[Lack]) -> Vec<Step> {
     };
     let mut install = packages.install.to_vec();
     let mut steps = Vec::new();
-    let driver = lacks.iter().any(|lack| !matches!(lack, Lack::Window(_)));
+    let driver = lacks.iter().any(|lack| matches!(lack, Lack::Vulkan | Lack::NewerMesa(_)));
     if driver && machine.system.is_bookworm() {
         if !machine.has_backports {
             steps.push(Step { input: Some(BACKPORTS_SOURCE), ..Step::new(&["tee", BACKPORTS_FILE]) });
@@ -121,6 +127,7 @@ fn steps(machine: &Machine, lacks: &[Lack]) -> Vec<Step> {
         install.extend(match lack {
             Lack::Vulkan | Lack::NewerMesa(_) => packages.vulkan,
             Lack::Window(_) => packages.window,
+            Lack::Tests(_) => packages.tests,
         });
     }
     steps.push(Step::new(&install));
@@ -143,6 +150,7 @@ mod tests {
             graphics_card: false,
             mesa: Some("25.0.7-2~bpo12+1".into()),
             missing_window_libraries: Vec::new(),
+            missing_test_programs: Vec::new(),
             has_backports: true,
         }
     }
@@ -223,6 +231,12 @@ mod tests {
         let machine = Machine { missing_window_libraries: vec!["libXi.so.6"], ..machine() };
         let install = format!("{INSTALL} libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0");
         assert_eq!(shell(&machine), ["apt-get update".into(), install]);
+    }
+
+    #[test]
+    fn installs_an_x_server_for_the_tests() {
+        let machine = Machine { missing_test_programs: vec!["Xvfb"], ..machine() };
+        assert_eq!(shell(&machine), ["apt-get update".into(), format!("{INSTALL} xvfb xdotool")]);
     }
 
     #[test]

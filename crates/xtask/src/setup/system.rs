@@ -28,6 +28,8 @@ pub struct Packages {
     pub vulkan: &'static [&'static str],
     /// What winit loads for a window: X11 with its XCB bridge, cursors and input, and the keyboard's state.
     pub window: &'static [&'static str],
+    /// An X server without a screen, and hands for it: what the test of the panel needs.
+    pub tests: &'static [&'static str],
 }
 
 impl System {
@@ -77,21 +79,25 @@ impl System {
                 ],
                 vulkan: &["libvulkan1", "mesa-vulkan-drivers"],
                 window: &["libx11-xcb1", "libxcursor1", "libxi6", "libxkbcommon-x11-0"],
+                tests: &["xvfb", "xdotool"],
             },
             Self::Fedora => Packages {
                 install: &["dnf", "install"],
                 vulkan: &["vulkan-loader", "mesa-vulkan-drivers"],
                 window: &["libX11-xcb", "libXcursor", "libXi", "libxkbcommon-x11"],
+                tests: &["xorg-x11-server-Xvfb", "xdotool"],
             },
             Self::Arch => Packages {
                 install: &["pacman", "-S", "--needed"],
                 vulkan: &["vulkan-icd-loader", "vulkan-swrast"],
                 window: &["libx11", "libxcursor", "libxi", "libxkbcommon-x11"],
+                tests: &["xorg-server-xvfb", "xdotool"],
             },
             Self::Suse => Packages {
                 install: &["zypper", "install"],
                 vulkan: &["libvulkan1", "libvulkan_lvp"],
                 window: &["libX11-xcb1", "libXcursor1", "libXi6", "libxkbcommon-x11-0"],
+                tests: &["xorg-x11-server-Xvfb", "xdotool"],
             },
             Self::OtherLinux | Self::Complete => return None,
         })
