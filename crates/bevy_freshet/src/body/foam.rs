@@ -20,7 +20,7 @@ pub struct WaterFoam {
     pub shear: f32,
     /// Shear below which none is born, 1/s, 0…100. Default 0.13.
     pub shear_threshold: f32,
-    /// Foam born in fast flow, 1/s for each m/s above the threshold, 0…10. Default 0.12.
+    /// Foam born in fast flow, 1/s for each m/s above the threshold, 0…10. Default 0.1.
     pub speed: f32,
     /// Speed below which none is born, m/s, 0…100. Default 0.85.
     pub speed_threshold: f32,
@@ -41,7 +41,7 @@ impl Default for WaterFoam {
             shore_depth: 0.2,
             shear: 0.2,
             shear_threshold: 0.13,
-            speed: 0.12,
+            speed: 0.1,
             speed_threshold: 0.85,
             bodies: 1.0,
             pattern_size: 1.5,

@@ -1,7 +1,7 @@
 //! The tile of foam.
 use super::tile;
 use bevy::{prelude::*, render::render_resource::TextureFormat};
-use std::f32::consts::SQRT_2;
+use std::f32::consts::{SQRT_2, TAU};
 
 /// Texels along one side of the tile.
 const SIZE: usize = 256;
@@ -9,14 +9,36 @@ const SIZE: usize = 256;
 /// Cells of bubbles across the tile and the weight of each scale: froth is made of large and small bubbles.
 const SCALES: [(usize, f32); 3] = [(5, 1.0), (12, 0.7), (29, 0.4)];
 
-/// How soon foam covers a place, as a standard normal variate (red), and its square (green).
+/// Waves of the patches across the tile, fewest and most, and how many of them.
+const PATCHES: (f32, f32, usize) = (2.0, 7.0, 40);
+
+/// How soon foam covers a place, as two standard normal variates: one that follows the walls between bubbles (red, its
+/// square green), and one that gathers them to patches (blue, its square alpha).
 ///
 /// Where the variate is above `−Φ⁻¹(d)` there is foam of mean cover `d`: thin foam is a lace along the walls between
-/// bubbles, dense foam is closed but for their middles. A normal variate stays one when two layers are mixed with weights
+/// bubbles, dense foam is closed but for their middles. A normal variate stays one when others are mixed in with weights
 /// whose squares sum to one (Heitz and Neyret 2018), so the cover stays right while foam drifts.
 pub(super) fn foam_tile() -> Image {
-    let texels = normal(&froth()).into_iter().map(|variate| [variate, variate * variate]).collect();
-    tile::repeating("water_foam", TextureFormat::Rg16Float, SIZE, texels)
+    let (bubbles, patches) = (normal(&froth()), normal(&patches()));
+    let texels = bubbles.into_iter().zip(patches).map(|(a, b)| [a, a * a, b, b * b]).collect();
+    tile::repeating("water_foam", TextureFormat::Rgba16Float, SIZE, texels)
+}
+
+/// A sum of long waves in all directions.
+fn patches() -> Vec<f32> {
+    let mut random = fastrand::Rng::with_seed(0x9A7C);
+    let mut sum = vec![0.0; SIZE * SIZE];
+    let (fewest, most, count) = PATCHES;
+    for _ in 0..count {
+        let waves = fewest * (most / fewest).powf(random.f32());
+        let vector = (Vec2::from_angle(random.f32() * TAU) * waves).round();
+        let phase = random.f32() * TAU;
+        for (i, value) in sum.iter_mut().enumerate() {
+            let place = vec2((i % SIZE) as f32, (i / SIZE) as f32) / SIZE as f32;
+            *value += (vector.dot(place) * TAU + phase).sin() / waves;
+        }
+    }
+    sum
 }
 
 /// Nearness to the walls between bubbles, summed over scales.
@@ -76,14 +98,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_variate_is_standard_normal() {
-        let variates = normal(&froth());
-        let count = variates.len() as f32;
-        let mean = variates.iter().sum::<f32>() / count;
-        let variance = variates.iter().map(|v| v * v).sum::<f32>() / count - mean * mean;
-        assert!(mean.abs() < 1e-3 && (variance - 1.0).abs() < 0.01, "{mean} {variance}");
-        let above = variates.iter().filter(|&&v| v > 1.2816).count() as f32 / count;
-        assert!((above - 0.1).abs() < 0.002, "{above}");
+    fn the_variates_are_standard_normal() {
+        for variates in [normal(&froth()), normal(&patches())] {
+            let count = variates.len() as f32;
+            let mean = variates.iter().sum::<f32>() / count;
+            let variance = variates.iter().map(|v| v * v).sum::<f32>() / count - mean * mean;
+            assert!(mean.abs() < 1e-3 && (variance - 1.0).abs() < 0.01, "{mean} {variance}");
+            let above = variates.iter().filter(|&&v| v > 1.2816).count() as f32 / count;
+            assert!((above - 0.1).abs() < 0.002, "{above}");
+        }
     }
 
     /// Thin foam lies along walls, the middle of a bubble is covered last.

@@ -10,32 +10,33 @@ const STREAK: f32 = 0.22;
 // Deviation of the variate over which foam turns from none to closed at a wall of bubbles.
 const SOFTNESS: f32 = 0.35;
 
-// Foam gathers to patches: the tile again, turned and larger, with this share of the variance. It hides that the tile
-// repeats.
+// Share of the variance of patches that foam gathers to. They are larger than bubbles and turned, and so hide that the tile
+// repeats. The same matrix is in `write.rs`.
 const PATCHES: f32 = 0.5;
 const PATCH: mat2x2<f32> = mat2x2<f32>(vec2(0.1171, 0.0603), vec2(-0.0603, 0.1171));
 
-// The variate of the foam tile and what a pixel hides of its variance.
-fn texel(at: vec2<f32>, footprint: Footprint) -> vec2<f32> {
-    let value = textureSampleGrad(foam, detail_sampler, at, footprint.x, footprint.y).xy;
-    return vec2(value.x, max(value.y - value.x * value.x, 0.0));
+fn texel(at: vec2<f32>, footprint: Footprint) -> vec4<f32> {
+    return textureSampleGrad(foam, detail_sampler, at, footprint.x, footprint.y);
 }
 
-// Variate and hidden variance at `place` (local xz, m), drawn out along `streak` (m).
+// The variate of the foam tile and what a pixel hides of its variance, at `place` (local xz, m) and drawn out along
+// `streak` (m).
 fn froth(place: vec2<f32>, streak: vec2<f32>, footprint: Footprint) -> vec2<f32> {
     let scale = surface.foam_scale;
     let within = Footprint(footprint.x * scale, footprint.y * scale);
-    let middle = place * scale - surface.foam_drift;
-    var drawn = vec2(0.0);
+    let middle = place * scale - surface.foam_drift.xy;
+    var mean = 0.0;
+    var hidden = 0.0;
     for (var i = 0; i < 4; i++) {
-        drawn += 0.25 * texel(middle + streak * (scale * (f32(i) - 1.5)), within);
+        let bubbles = texel(middle + streak * (scale * (f32(i) - 1.5)), within).xy;
+        mean += 0.25 * bubbles.x;
+        hidden += 0.25 * max(bubbles.y - bubbles.x * bubbles.x, 0.0);
     }
     // Four samples that know nothing of each other have half the deviation of one.
-    let apart = smoothstep(0.0, 0.08, length(streak) * scale);
-    let turned = Footprint(PATCH * within.x, PATCH * within.y);
-    let patches = texel(PATCH * place * scale - PATCH * surface.foam_drift, turned);
-    let mean = sqrt(1.0 - PATCHES) * drawn.x * (1.0 + apart) + sqrt(PATCHES) * patches.x;
-    return vec2(mean, (1.0 - PATCHES) * drawn.y + PATCHES * patches.y);
+    mean *= 1.0 + smoothstep(0.0, 0.08, length(streak) * scale);
+    let patches = texel(PATCH * place * scale - surface.foam_drift.zw, Footprint(PATCH * within.x, PATCH * within.y)).zw;
+    hidden = mix(hidden, max(patches.y - patches.x * patches.x, 0.0), PATCHES);
+    return vec2(sqrt(1.0 - PATCHES) * mean + sqrt(PATCHES) * patches.x, hidden);
 }
 
 // Φ of the normal distribution (Page 1977).

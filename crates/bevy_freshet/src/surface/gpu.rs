@@ -61,7 +61,7 @@ pub(crate) struct GpuSurface {
     pub foam_albedo: Vec3,
     pub foam_amount: f32,
     pub foam_scale: f32,
-    pub foam_drift: Vec2,
+    pub foam_drift: Vec4,
 
     // Stylised light.
     pub tint: Vec3,

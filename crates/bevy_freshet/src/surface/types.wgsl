@@ -58,7 +58,7 @@ struct Surface {
     foam_albedo: vec3<f32>,
     foam_amount: f32,
     foam_scale: f32,                // patterns per metre
-    foam_drift: vec2<f32>,          // shift by the uniform current, patterns
+    foam_drift: vec4<f32>,          // shift of bubbles (xy) and patches (zw) by the uniform current, patterns
 
     // Stylised light.
     tint: vec3<f32>,                // strength times colour of the tinted highlight, units: 1/sr

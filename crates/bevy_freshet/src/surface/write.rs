@@ -16,6 +16,7 @@ use crate::{
 use bevy::{
     asset::RenderAssetUsages,
     image::Image,
+    math::{DMat2, DVec2},
     prelude::*,
     render::{
         render_resource::{Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension},
@@ -243,12 +244,17 @@ fn write_field(gpu: &mut GpuSurface, window: &FieldWindow, pictures: &FieldPictu
     }
 }
 
+/// Patterns of foam's patches from those of its bubbles, as in `foam.wgsl`.
+const FOAM_PATCH: DMat2 = DMat2::from_cols(DVec2::new(0.1171, 0.0603), DVec2::new(-0.0603, 0.1171));
+
 fn write_foam(gpu: &mut GpuSurface, entity: Entity, foam: &WaterFoam, ripples: &Ripples, reported: &mut Reported) {
     let usable = WaterFoam::default();
     gpu.foam_amount = reported.clamp(entity, "WaterFoam::amount", foam.amount, 0.0..=1.0, usable.amount);
     let size = reported.clamp(entity, "WaterFoam::pattern_size", foam.pattern_size, 0.05..=100.0, usable.pattern_size);
     gpu.foam_scale = size.recip();
-    gpu.foam_drift = (ripples.carried / f64::from(size)).fract_gl().as_vec2();
+    let drift = ripples.carried / f64::from(size);
+    let [bubbles, patches] = [drift, FOAM_PATCH * drift].map(|shift| shift.fract_gl().as_vec2());
+    gpu.foam_drift = bubbles.extend(patches.x).extend(patches.y);
     let (albedo, fallback) = (foam.albedo.to_vec3(), usable.albedo.to_vec3());
     gpu.foam_albedo = reported.clamp3(entity, "WaterFoam::albedo", albedo, 0.0..=1.0, fallback);
 }
