@@ -12,7 +12,7 @@ const SOFTNESS: f32 = 0.35;
 
 // Share of the variance of patches that foam gathers to. They are larger than bubbles and turned, and so hide that the tile
 // repeats. The same matrix is in `write.rs`.
-const PATCHES: f32 = 0.5;
+const PATCHES: f32 = 0.4;
 const PATCH: mat2x2<f32> = mat2x2<f32>(vec2(0.1171, 0.0603), vec2(-0.0603, 0.1171));
 
 fn texel(at: vec2<f32>, footprint: Footprint) -> vec4<f32> {
