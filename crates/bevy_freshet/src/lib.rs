@@ -28,7 +28,7 @@ pub mod prelude {
     pub use crate::{
         WaterPlugin, WaterSystems,
         bed::BedShading,
-        body::{Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterInteraction, WaterOptics, WaterWaves},
+        body::{Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterIce, WaterInteraction, WaterOptics, WaterWaves},
         query::{WaterQuery, WaterSample},
         reflection::WaterReflection,
         surface::{NoWater, SurfaceView, WaterSurface},

@@ -30,12 +30,12 @@ pub fn fractal_noise(point: Vec2, period: UVec2, octaves: u32, seed: u32) -> f32
     sum / all
 }
 
-/// A unit vector for a lattice point.
+/// A unit vector for a lattice point, one of eight: three layers hide that there are no more.
 fn gradient(at: UVec2, seed: u32) -> Vec2 {
-    // Sixteen directions are as good as all: the eye sees no lattice.
-    const STEP: f32 = core::f32::consts::TAU / 16.0;
-    let (sin, cos) = libm::sincosf((hash(at, seed) >> 28) as f32 * STEP);
-    Vec2::new(cos, sin)
+    const D: f32 = core::f32::consts::FRAC_1_SQRT_2;
+    const DIRECTIONS: [(f32, f32); 8] =
+        [(1.0, 0.0), (D, D), (0.0, 1.0), (-D, D), (-1.0, 0.0), (-D, -D), (0.0, -1.0), (D, -D)];
+    DIRECTIONS[(hash(at, seed) >> 29) as usize].into()
 }
 
 /// Mixes the bits of two coordinates and a seed (multiply and xor-shift, after Ellis's lowbias32, 2018).

@@ -16,3 +16,5 @@
 @group(#{MATERIAL_BIND_GROUP}) @binding(10) var field_rings: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(11) var field_sampler: sampler;
 @group(#{MATERIAL_BIND_GROUP}) @binding(12) var field_matter: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(20) var ice_order: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(21) var ice_tile: texture_2d<f32>;

@@ -37,6 +37,10 @@ pub(crate) struct SurfaceMaterial {
     pub field_rings: Option<Handle<Image>>,
     #[texture(12)]
     pub field_matter: Option<Handle<Image>>,
+    #[texture(20, sample_type = "float", filterable = false)]
+    pub ice_order: Option<Handle<Image>>,
+    #[texture(21)]
+    pub ice_tile: Option<Handle<Image>>,
 }
 
 impl SurfaceMaterial {

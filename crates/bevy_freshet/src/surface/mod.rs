@@ -5,6 +5,8 @@
 //! a `DepthPrepass`.
 mod detail;
 mod gpu;
+mod ice;
+mod ice_tile;
 mod material;
 mod mesh;
 mod ripples;
@@ -83,6 +85,8 @@ pub enum SurfaceView {
     Height,
     /// Opacity of the water's edge.
     Edge,
+    /// Ice: red its thickness in m as bodies feel it, green the drawn cover, blue the snow on it.
+    Ice,
 }
 
 /// Draws the water. Does nothing in an app without a GPU device.
@@ -98,6 +102,8 @@ impl Plugin for SurfacePlugin {
         load_shader_library!(app, "ground.wgsl");
         load_shader_library!(app, "field.wgsl");
         load_shader_library!(app, "foam.wgsl");
+        load_shader_library!(app, "ice_growth.wgsl");
+        load_shader_library!(app, "ice.wgsl");
         load_shader_library!(app, "waves.wgsl");
         load_shader_library!(app, "detail.wgsl");
         load_shader_library!(app, "optics.wgsl");

@@ -5,6 +5,7 @@
 #import freshet::surface::field
 #import freshet::surface::foam
 #import freshet::surface::ground
+#import freshet::surface::ice
 #import freshet::surface::light
 #import freshet::surface::mirror
 #import freshet::surface::optics
@@ -36,10 +37,11 @@ fn vertex(in: Vertex) -> Fragment {
     // The spacing of the mesh grows with the distance from its centre; this bound of it is continuous across rings.
     let distance = max(abs(in.position.x), abs(in.position.z));
     let spacing = surface.mesh_cell * max(1.0, distance / surface.mesh_reach * 2.0 - 1.0);
-    let fade = waves::shallow_fade(ground::still_depth(rest));
+    let ice = ice::felt(rest);
+    let fade = waves::shallow_fade(ground::still_depth(rest)) * ice.open;
     let moved = waves::displacement(rest, fade, spacing);
     let xz = surface.world_from_local * (rest + moved.xz) + surface.world_origin;
-    let world = vec3(xz.x, surface.level + moved.y, xz.y);
+    let world = vec3(xz.x, surface.level - ice::drop(ice.thickness) + moved.y, xz.y);
     return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest);
 }
 
@@ -51,13 +53,14 @@ struct Facet {
     hidden: f32,        // slope variance that a pixel hides
 }
 
-fn facet(rest: vec2<f32>, depth: f32, rings: vec2<f32>) -> Facet {
+// `open` is the share of the surface that is free to move.
+fn facet(rest: vec2<f32>, depth: f32, rings: vec2<f32>, open: f32) -> Facet {
     let footprint = detail::Footprint(dpdx(rest), dpdy(rest));
     let spacing = max(length(footprint.x), length(footprint.y));
-    let swell = waves::slope(rest, waves::shallow_fade(depth), spacing);
+    let swell = waves::slope(rest, waves::shallow_fade(depth) * open, spacing);
     let ripples = detail::slope(rest, depth, footprint);
-    let slope = surface.world_from_local * (swell.slope + ripples.slope + rings);
-    return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance);
+    let slope = surface.world_from_local * (swell.slope + (ripples.slope + rings) * open);
+    return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance * open * open);
 }
 
 fn normal_of(slope: vec2<f32>) -> vec3<f32> {
@@ -68,8 +71,10 @@ fn normal_of(slope: vec2<f32>) -> vec3<f32> {
 fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(0) vec4<f32> {
     let pixel = in.position.xy;
     let still_depth = ground::still_depth(in.rest);
-    let field = field::at(in.rest);
-    let facet = facet(in.rest, still_depth, field.slope);
+    let fields = field::at(in.rest);
+    let felt = ice::felt(in.rest);
+    let facet = facet(in.rest, still_depth, fields.slope, felt.open);
+    let sheet = ice::sheet(in.rest, felt, detail::Footprint(dpdx(in.rest), dpdy(in.rest)));
     let normal = normal_of(facet.slope);
     let to_eye = scene::direction_to_eye(in.world);
     let behind = scene::behind(pixel);
@@ -86,16 +91,28 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
     let cos_eye = max(dot(normal, to_eye), 0.02);
     let share = optics::reflectance(cos_eye) * surface.reflectivity;
 
-    let lit = light::lights(in.world, normal, to_eye, facet.hidden + surface.roughness, pixel);
-    let reflection = reflection(in.world, facet, to_eye, fog);
-    let below = refraction::refracted(in.world, in.position, normal, to_eye, behind, lit);
+    // The lights meet the ice where there is any; the water's share of it in between.
+    let solid = normal_of(mix(facet.slope, sheet.slope, sheet.cover));
+    let rough = mix(facet.hidden + surface.roughness, surface.ice_roughness, sheet.cover);
+    let lit = light::lights(in.world, solid, to_eye, rough, pixel);
+    var reflection = vec3(0.0);
+    if sheet.cover < 1.0 {
+        reflection = reflection(in.world, facet, to_eye, fog);
+    }
+    var below = vec3(0.0);
+    if ice::is_clear(sheet) {
+        below = refraction::refracted(in.world, in.position, normal, to_eye, behind, lit);
+    }
 
     var color = mix(below, reflection, share);
     if (surface.flags & types::FLAG_SUNLIGHT) != 0u {
         color += lit.glitter * surface.reflectivity;
     }
     color = mix(color, surface.dull_color * lit.below, surface.dullness);
-    color = mix(color, foam::color(lit.above), foam::cover(in.rest, field.foam));
+    color = mix(color, foam::color(lit.above), foam::cover(in.rest, fields.foam) * felt.open);
+    if sheet.cover > 0.0 {
+        color = mix(color, ice::color(sheet, in.world, solid, to_eye, lit, below, fog), sheet.cover);
+    }
     if (surface.flags & types::FLAG_FOG) != 0u {
         color = scene::with_fog(color, fog);
     }
@@ -111,6 +128,7 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
         case types::VIEW_NORMAL: { color = normal * 0.5 + 0.5; }
         case types::VIEW_HEIGHT: { color = split(in.world.y - surface.level); }
         case types::VIEW_EDGE: { color = vec3(cover); }
+        case types::VIEW_ICE: { color = vec3(felt.thickness, sheet.cover, sheet.snow); }
         default: {}
     }
     return finish(color);

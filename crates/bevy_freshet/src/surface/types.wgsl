@@ -58,6 +58,20 @@ struct Surface {
     foam_albedo: vec3<f32>,
     foam_amount: f32,
     foam_scale: f32,                // patterns per metre
+
+    // Ice
+    ice_order_size: vec2<f32>,      // cells
+    ice_order_cell: f32,            // units: m
+    ice_freezing: f32,              // part of the winter that has passed, 0…1
+    ice_thickest: f32,              // thickness of the oldest ice at its end, units: m
+    ice_level_drop: f32,            // per thickness
+    ice_snow: f32,                  // share that snow covers in the end
+    ice_cracks: f32,
+    ice_absorption: vec3<f32>,      // units: 1/m
+    ice_scattering: f32,            // units: 1/m
+    ice_snow_albedo: vec3<f32>,
+    ice_roughness: f32,             // slope variance of bare ice
+    ice_scale: f32,                 // patterns per metre
 }
 
 const FLAG_MIRROR: u32 = 1u;
@@ -66,6 +80,7 @@ const FLAG_FLOW: u32 = 4u;
 const FLAG_FOG: u32 = 8u;
 const FLAG_SUNLIGHT: u32 = 16u;
 const FLAG_FIELD: u32 = 32u;
+const FLAG_ICE: u32 = 4096u;
 
 const VIEW_WATER: u32 = 0u;
 const VIEW_REFLECTION: u32 = 1u;
@@ -74,6 +89,7 @@ const VIEW_FRESNEL: u32 = 3u;
 const VIEW_NORMAL: u32 = 4u;
 const VIEW_HEIGHT: u32 = 5u;
 const VIEW_EDGE: u32 = 6u;
+const VIEW_ICE: u32 = 24u;
 
 const FRESNEL_SIMPLE: u32 = 0u;
 const FRESNEL_SCHLICK: u32 = 1u;
