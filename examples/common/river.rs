@@ -115,7 +115,7 @@ fn ground_collider(bed: &WaterBed) -> Collider {
 
 /// The water, as large as the terrain.
 fn river(mut commands: Commands, scene: Res<Scene>) {
-    commands.spawn((
+    let mut river = commands.spawn((
         Name::new("river"),
         Water::new(scene.bed.elevations().extent()),
         WaterOptics::RIVER,
@@ -125,6 +125,9 @@ fn river(mut commands: Commands, scene: Res<Scene>) {
         scene.flow.clone(),
         Transform::from_xyz(0.0, LEVEL, 0.0),
     ));
+    if scene.view.freezing > 0.0 {
+        river.insert(WaterIce { freezing: scene.view.freezing, ..default() });
+    }
     // Who arrives at the end begins anew.
     commands.spawn((
         Collider::cuboid(24.0, 4.0, 3.0),

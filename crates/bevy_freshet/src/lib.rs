@@ -38,7 +38,8 @@ pub mod prelude {
         WaterPlugin, WaterSystems,
         bed::BedShading,
         body::{
-            Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterInteraction, WaterLighting, WaterOptics, WaterWaves,
+            Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterIce, WaterInteraction, WaterLighting, WaterOptics,
+            WaterWaves,
         },
         query::{WaterQuery, WaterSample},
         reflection::WaterReflection,

@@ -7,6 +7,8 @@ pub mod fields;
 pub mod fill;
 pub mod flow;
 pub mod grid;
+pub mod ice;
+pub mod noise;
 pub mod optics;
 pub mod voxels;
 pub mod waves;

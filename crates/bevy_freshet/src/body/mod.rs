@@ -2,6 +2,8 @@
 mod bed;
 mod flow;
 mod foam;
+mod frozen;
+mod ice;
 mod interaction;
 mod lighting;
 mod optics;
@@ -11,6 +13,7 @@ mod waves;
 pub use bed::{WaterBed, WaterBedError};
 pub use flow::WaterFlow;
 pub use foam::WaterFoam;
+pub use ice::WaterIce;
 pub use interaction::WaterInteraction;
 pub use lighting::WaterLighting;
 pub use optics::{Fresnel, WaterOptics};

@@ -1,9 +1,13 @@
 //! A water with its settings checked and its waves at one instant: what surface, query and bodies read.
-use super::{Water, WaterBed, WaterFlow, WaterWaves};
+use super::{
+    Water, WaterBed, WaterFlow, WaterIce, WaterWaves,
+    frozen::{self, IceMap, ResolvedIce},
+};
 use crate::report::Reported;
 use bevy::{math::Affine2, prelude::*};
 use freshet_hydro::{
     grid::Grid,
+    ice,
     waves::{self, WaveField},
 };
 use std::sync::Arc;
@@ -29,6 +33,8 @@ pub(crate) struct ResolvedWater {
     pub drift: Vec2,
     /// Map of the current in local xz with its factor.
     pub flow: Option<(Arc<Grid<Vec2>>, f32)>,
+    /// The ice, if there is any.
+    pub ice: Option<ResolvedIce>,
 }
 
 /// A bed as a water sees it.
@@ -60,7 +66,22 @@ impl ResolvedWater {
 
     /// Share of the waves' height at local `place`.
     pub fn fade(&self, place: Vec2) -> f32 {
-        waves::shallow_fade(self.still_depth(place), self.fade_depth)
+        waves::shallow_fade(self.still_depth(place), self.fade_depth) * self.open(place)
+    }
+
+    /// Thickness of the ice at local `place`, m.
+    pub fn ice_thickness(&self, place: Vec2) -> f32 {
+        self.ice.as_ref().map_or(0.0, |ice| ice.thickness(place))
+    }
+
+    /// Share of the surface at local `place` that no ice covers.
+    pub fn open(&self, place: Vec2) -> f32 {
+        1.0 - ice::cover(self.ice_thickness(place))
+    }
+
+    /// How far the surface at local `place` lies below the still water's, as the ice has lowered it, m.
+    pub fn drop(&self, place: Vec2) -> f32 {
+        self.ice.as_ref().map_or(0.0, |ice| ice.level_drop * ice.thickness(place))
     }
 
     /// The middle of the still surface, turned as the water.
@@ -69,8 +90,13 @@ impl ResolvedWater {
         Transform::from_xyz(center.x, self.level, center.y).with_rotation(Quat::from_rotation_y(-angle))
     }
 
-    /// Current at local `place`, local xz, m/s.
+    /// Current at the surface at local `place`, local xz, m/s: none under closed ice.
     pub fn current(&self, place: Vec2) -> Vec2 {
+        self.open_current(place) * self.open(place)
+    }
+
+    /// Current at local `place` as it is without ice, local xz, m/s.
+    pub fn open_current(&self, place: Vec2) -> Vec2 {
         let Some((map, scale)) = &self.flow else { return self.drift };
         let share = waves::shallow_fade(self.still_depth(place), WaterFlow::BANK_DEPTH);
         let mapped = map.sample(place);
@@ -91,9 +117,17 @@ pub(crate) fn resolve_waters(
     time: Res<Time>,
     mut reported: ResMut<Reported>,
     beds: Query<(Entity, &WaterBed, &GlobalTransform)>,
-    mut waters: Query<(Entity, &Water, &WaterWaves, Option<&WaterFlow>, &GlobalTransform, &mut ResolvedWater)>,
+    mut waters: Query<(
+        Entity,
+        &Water,
+        &WaterWaves,
+        Option<&WaterFlow>,
+        &GlobalTransform,
+        &mut ResolvedWater,
+        Option<(&WaterIce, &mut IceMap)>,
+    )>,
 ) {
-    for (entity, water, waves, flow, pose, mut resolved) in &mut waters {
+    for (entity, water, waves, flow, pose, mut resolved, ice) in &mut waters {
         let world_from_local = yaw_frame(pose);
         let mut next = ResolvedWater {
             world_from_local,
@@ -110,6 +144,9 @@ pub(crate) fn resolve_waters(
             next.flow = flow.map.clone().map(|map| (map, scale));
         }
         next.bed = bed_below(&next, &beds);
+        if let Some((ice, mut map)) = ice {
+            next.ice = frozen::resolve(entity, ice, &mut map, &next, &mut reported);
+        }
         report_uncovered(entity, &next, &beds, &mut reported);
         *resolved = next;
     }

@@ -15,6 +15,8 @@ pub struct WaterSample {
     pub velocity: Vec3,
     /// Depth of the water column, m, > 0; infinite without a bed.
     pub depth: f32,
+    /// Thickness of the ice, m; 0 on open water.
+    pub ice: f32,
 }
 
 /// Answers where the water is: the same surface that is drawn, at the clock of the schedule that asks (the fixed clock
@@ -51,7 +53,7 @@ fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSam
     }
     let rest = water.waves.rest_below(local, |rest| water.fade(rest));
     let fade = water.fade(rest);
-    let height = water.level + water.waves.displacement(rest, fade).y;
+    let height = water.level - water.drop(rest) + water.waves.displacement(rest, fade).y;
     let depth = water.still_depth(local) + (height - water.level);
     if depth <= 0.0 {
         return None;
@@ -68,5 +70,6 @@ fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSam
         normal: to_world(water.waves.normal(rest, fade)),
         velocity: to_world(velocity),
         depth,
+        ice: water.ice_thickness(local),
     })
 }

@@ -17,3 +17,5 @@
 @group(#{MATERIAL_BIND_GROUP}) @binding(11) var field_sampler: sampler;
 @group(#{MATERIAL_BIND_GROUP}) @binding(12) var field_matter: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(13) var foam: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(14) var ice_order: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(15) var ice_tile: texture_2d<f32>;

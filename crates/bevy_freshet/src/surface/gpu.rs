@@ -77,6 +77,20 @@ pub(crate) struct GpuSurface {
     // For SurfaceView.
     pub current_drift: Vec2,
     pub current_scale: f32,
+
+    // Ice
+    pub ice_order_size: Vec2,
+    pub ice_order_cell: f32,
+    pub ice_freezing: f32,
+    pub ice_thickest: f32,
+    pub ice_level_drop: f32,
+    pub ice_snow: f32,
+    pub ice_cracks: f32,
+    pub ice_absorption: Vec3,
+    pub ice_scattering: f32,
+    pub ice_snow_albedo: Vec3,
+    pub ice_roughness: f32,
+    pub ice_scale: f32,
 }
 
 impl GpuSurface {
@@ -86,6 +100,7 @@ impl GpuSurface {
     pub const FOG: u32 = 8;
     pub const SUNLIGHT: u32 = 16;
     pub const FIELD: u32 = 32;
+    pub const ICE: u32 = 4096;
 }
 
 #[cfg(test)]
@@ -109,6 +124,7 @@ mod tests {
             ("FOG", GpuSurface::FOG),
             ("SUNLIGHT", GpuSurface::SUNLIGHT),
             ("FIELD", GpuSurface::FIELD),
+            ("ICE", GpuSurface::ICE),
         ];
         for (name, value) in flags {
             assert!(WGSL.contains(&format!("const FLAG_{name}: u32 = {value}u;")), "{name}");

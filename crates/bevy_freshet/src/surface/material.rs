@@ -39,6 +39,10 @@ pub(crate) struct SurfaceMaterial {
     pub field_matter: Option<Handle<Image>>,
     #[texture(13)]
     pub foam: Handle<Image>,
+    #[texture(14, sample_type = "float", filterable = false)]
+    pub ice_order: Option<Handle<Image>>,
+    #[texture(15)]
+    pub ice_tile: Option<Handle<Image>>,
 }
 
 impl SurfaceMaterial {

@@ -6,6 +6,8 @@
 mod detail;
 mod foam;
 mod gpu;
+mod ice;
+mod ice_tile;
 mod material;
 mod mesh;
 mod ripples;
@@ -101,6 +103,8 @@ pub enum SurfaceView {
     Interaction,
     /// What a metre of the dyed water lets through: white where there is no dye.
     Dye,
+    /// Ice: red its thickness in m as bodies feel it, green the drawn cover, blue the snow on it.
+    Ice,
 }
 
 /// Draws the water. Does nothing in an app without a GPU device.
@@ -117,6 +121,8 @@ impl Plugin for SurfacePlugin {
         load_shader_library!(app, "flow.wgsl");
         load_shader_library!(app, "field.wgsl");
         load_shader_library!(app, "foam.wgsl");
+        load_shader_library!(app, "ice_growth.wgsl");
+        load_shader_library!(app, "ice.wgsl");
         load_shader_library!(app, "waves.wgsl");
         load_shader_library!(app, "detail.wgsl");
         load_shader_library!(app, "optics.wgsl");

@@ -7,6 +7,7 @@
 #import freshet::surface::flow
 #import freshet::surface::foam
 #import freshet::surface::ground
+#import freshet::surface::ice
 #import freshet::surface::light
 #import freshet::surface::mirror
 #import freshet::surface::optics
@@ -39,10 +40,11 @@ fn vertex(in: Vertex) -> Fragment {
     // The spacing of the mesh grows with the distance from its centre; this bound of it is continuous across rings.
     let distance = max(abs(in.position.x), abs(in.position.z));
     let spacing = surface.mesh_cell * max(1.0, distance / surface.mesh_reach * 2.0 - 1.0);
-    let fade = waves::shallow_fade(ground::still_depth(rest));
+    let ice = ice::felt(rest);
+    let fade = waves::shallow_fade(ground::still_depth(rest)) * ice.open;
     let moved = waves::displacement(rest, fade, spacing);
     let xz = surface.world_from_local * (rest + moved.xz) + surface.world_origin;
-    let world = vec3(xz.x, surface.level + moved.y, xz.y);
+    let world = vec3(xz.x, surface.level - ice::drop(ice.thickness) + moved.y, xz.y);
     return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest);
 }
 
@@ -54,12 +56,20 @@ struct Facet {
     hidden: f32,        // slope variance that a pixel hides
 }
 
-fn facet(rest: vec2<f32>, depth: f32, drift: flow::Drift, footprint: flow::Footprint, rings: vec2<f32>) -> Facet {
+// `open` is the share of the surface that is free to move.
+fn facet(
+    rest: vec2<f32>,
+    depth: f32,
+    drift: flow::Drift,
+    footprint: flow::Footprint,
+    rings: vec2<f32>,
+    open: f32,
+) -> Facet {
     let spacing = max(length(footprint.x), length(footprint.y));
-    let swell = waves::slope(rest, waves::shallow_fade(depth), spacing);
+    let swell = waves::slope(rest, waves::shallow_fade(depth) * open, spacing);
     let ripples = detail::slope(drift, footprint);
-    let slope = surface.world_from_local * (swell.slope + ripples.slope + rings);
-    return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance);
+    let slope = surface.world_from_local * (swell.slope + (ripples.slope + rings) * open);
+    return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance * open * open);
 }
 
 fn normal_of(slope: vec2<f32>) -> vec3<f32> {
@@ -72,9 +82,11 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
     let still_depth = ground::still_depth(in.rest);
     let fields = field::at(in.rest);
     let footprint = flow::Footprint(dpdx(in.rest), dpdy(in.rest));
+    let pixel_size = max(length(footprint.x), length(footprint.y));
     let drift = flow::drift(in.rest, still_depth);
-    let facet = facet(in.rest, still_depth, drift, footprint, fields.slope);
-    let pixel_size = max(length(dpdx(in.rest)), length(dpdy(in.rest)));
+    let felt = ice::felt(in.rest);
+    let facet = facet(in.rest, still_depth, drift, footprint, fields.slope, felt.open);
+    let sheet = ice::sheet(in.rest, felt, footprint);
     let normal = normal_of(facet.slope);
     let to_eye = scene::direction_to_eye(in.world);
     optics::dye = fields.dye;
@@ -92,16 +104,28 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
     let cos_eye = max(dot(normal, to_eye), 0.02);
     let share = optics::reflectance(cos_eye) * surface.reflectivity;
 
-    let lit = light::lights(Place(in.world, normal, to_eye, facet.hidden, pixel));
-    let reflection = reflection(in.world, facet, to_eye, fog);
-    let below = refraction::refracted(in.world, in.position, normal, to_eye, behind, lit);
+    // The lights meet the ice where there is any; the water's share of it in between.
+    let solid = normal_of(mix(facet.slope, sheet.slope, sheet.cover));
+    let rough = mix(facet.hidden, surface.ice_roughness, sheet.cover);
+    let lit = light::lights(Place(in.world, solid, to_eye, rough, pixel));
+    var reflection = vec3(0.0);
+    if sheet.cover < 1.0 {
+        reflection = reflected(in.world, facet, to_eye, fog);
+    }
+    var below = vec3(0.0);
+    if ice::is_clear(sheet) {
+        below = refraction::refracted(in.world, in.position, normal, to_eye, behind, lit);
+    }
 
     var color = mix(below, reflection, share) * lit.shade + lit.glow;
     if (surface.flags & types::FLAG_SUNLIGHT) != 0u {
         color += lit.glitter * surface.reflectivity;
     }
     color = mix(color, surface.dull_color * lit.below, surface.dullness);
-    color = mix(color, foam::color(lit.above), foam::cover(drift, fields.foam, footprint));
+    color = mix(color, foam::color(lit.above), foam::cover(drift, fields.foam, footprint) * felt.open);
+    if sheet.cover > 0.0 {
+        color = mix(color, ice::color(sheet, in.world, solid, to_eye, lit, below, fog), sheet.cover);
+    }
     if (surface.flags & types::FLAG_FOG) != 0u {
         color = scene::with_fog(color, fog);
     }
@@ -123,13 +147,14 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
         case types::VIEW_FOAM: { color = vec3(fields.foam); }
         case types::VIEW_INTERACTION: { color = vec3(fields.cover, max(20.0 * vec2(fields.height, -fields.height), vec2(0.0))); }
         case types::VIEW_DYE: { color = exp(-fields.dye); }
+        case types::VIEW_ICE: { color = vec3(felt.thickness, sheet.cover, sheet.snow); }
         default: {}
     }
     return finish(color);
 }
 
 // Reflected light, averaged over four rays that lie in the pixel and in the slopes it hides.
-fn reflection(at: vec3<f32>, facet: Facet, to_eye: vec3<f32>, fog: scene::Fog) -> vec3<f32> {
+fn reflected(at: vec3<f32>, facet: Facet, to_eye: vec3<f32>, fog: scene::Fog) -> vec3<f32> {
     let foot = vec3(at.x, surface.level, at.z);
     // Both directions share the variance; two points at ± one deviation have it.
     let hidden = sqrt(0.5 * facet.hidden);

@@ -4,6 +4,7 @@ use super::{
     detail::detail_tile,
     foam::foam_tile,
     gpu::GpuSurface,
+    ice_tile::ice_tile,
     material::SurfaceMaterial,
     mesh::{nested_grid, rings_for},
     viewer::Viewers,
@@ -99,6 +100,8 @@ pub(crate) struct GroundTextures {
     flows: Vec<(Arc<Grid<Vec2>>, Handle<Image>)>,
     /// Largest speed of each flow map, m/s.
     fastest: Vec<(Arc<Grid<Vec2>>, f32)>,
+    ice_orders: Vec<(Arc<Grid<f32>>, Handle<Image>)>,
+    ice_tile: Option<Handle<Image>>,
 }
 
 impl GroundTextures {
@@ -121,9 +124,24 @@ impl GroundTextures {
         shared(&mut self.flows, grid, || images.add(image()))
     }
 
+    /// The order in which a water freezes.
+    pub fn ice_order(&mut self, grid: &Arc<Grid<f32>>, images: &mut Assets<Image>) -> Handle<Image> {
+        let image = || {
+            let data = grid.values().iter().flat_map(|order| order.to_le_bytes()).collect();
+            grid_image("water_ice_order", grid.size(), TextureFormat::R32Float, data)
+        };
+        shared(&mut self.ice_orders, grid, || images.add(image()))
+    }
+
+    /// The pattern of all ice, made when the first water freezes.
+    pub fn ice_tile(&mut self, images: &mut Assets<Image>) -> Handle<Image> {
+        self.ice_tile.get_or_insert_with(|| images.add(ice_tile())).clone()
+    }
+
     /// Drops the textures of grids that nothing else uses.
     fn collect(&mut self) {
         self.beds.retain(|(grid, _)| Arc::strong_count(grid) > 1);
+        self.ice_orders.retain(|(grid, _)| Arc::strong_count(grid) > 1);
         // Held here twice: beside the texture and beside the largest speed.
         self.flows.retain(|(grid, _)| Arc::strong_count(grid) > 2);
         self.fastest.retain(|(grid, _)| Arc::strong_count(grid) > 1);
@@ -213,6 +231,8 @@ pub(crate) fn sync_surfaces(
                 field_rings: None,
                 field_matter: None,
                 foam: assets.foam.clone(),
+                ice_order: None,
+                ice_tile: None,
             })),
             // Placed and shown from the next frame on, when it is written for the first time.
             Visibility::Hidden,
@@ -227,6 +247,7 @@ fn place(water: &ResolvedWater) -> (Transform, GlobalTransform, Aabb) {
     let amplitude = water.waves.total_amplitude() + 0.01;
     let pose = water.pose();
     let half = water.half_size + amplitude;
-    let bounds = Aabb3d::new(Vec3::ZERO, vec3(half.x, amplitude, half.y));
+    let mut bounds = Aabb3d::new(Vec3::ZERO, vec3(half.x, amplitude, half.y));
+    bounds.min.y -= water.ice.as_ref().map_or(0.0, |ice| ice.deepest_drop());
     (pose, pose.into(), Aabb::from_min_max(bounds.min.into(), bounds.max.into()))
 }

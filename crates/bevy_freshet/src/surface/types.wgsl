@@ -74,6 +74,20 @@ struct Surface {
     // For SurfaceView.
     current_drift: vec2<f32>,       // uniform part of the current, local xz, units: m/s
     current_scale: f32,             // factor on the flow map
+
+    // Ice
+    ice_order_size: vec2<f32>,      // cells
+    ice_order_cell: f32,            // units: m
+    ice_freezing: f32,              // part of the winter that has passed, 0…1
+    ice_thickest: f32,              // thickness of the oldest ice at its end, units: m
+    ice_level_drop: f32,            // per thickness
+    ice_snow: f32,                  // share that snow covers in the end
+    ice_cracks: f32,
+    ice_absorption: vec3<f32>,      // units: 1/m
+    ice_scattering: f32,            // units: 1/m
+    ice_snow_albedo: vec3<f32>,
+    ice_roughness: f32,             // slope variance of bare ice
+    ice_scale: f32,                 // patterns per metre
 }
 
 const FLAG_MIRROR: u32 = 1u;
@@ -82,6 +96,7 @@ const FLAG_FLOW: u32 = 4u;
 const FLAG_FOG: u32 = 8u;
 const FLAG_SUNLIGHT: u32 = 16u;
 const FLAG_FIELD: u32 = 32u;
+const FLAG_ICE: u32 = 4096u;
 
 const VIEW_WATER: u32 = 0u;
 const VIEW_REFLECTION: u32 = 1u;
@@ -96,6 +111,7 @@ const VIEW_WIREFRAME: u32 = 9u;
 const VIEW_FOAM: u32 = 10u;
 const VIEW_INTERACTION: u32 = 11u;
 const VIEW_DYE: u32 = 12u;
+const VIEW_ICE: u32 = 13u;
 
 const FRESNEL_SIMPLE: u32 = 0u;
 const FRESNEL_SCHLICK: u32 = 1u;

@@ -3,7 +3,7 @@ use super::SurfaceView;
 
 impl SurfaceView {
     /// Every view, the water itself first.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Water,
         Self::Reflection,
         Self::Refraction,
@@ -17,6 +17,7 @@ impl SurfaceView {
         Self::Foam,
         Self::Interaction,
         Self::Dye,
+        Self::Ice,
     ];
 
     /// What it is called.
@@ -35,6 +36,7 @@ impl SurfaceView {
             Self::Foam => "foam",
             Self::Interaction => "interaction",
             Self::Dye => "dye",
+            Self::Ice => "ice",
         }
     }
 
@@ -57,6 +59,7 @@ impl SurfaceView {
             Self::Foam => "White: covered by foam. Black: none.",
             Self::Interaction => "Red: covered by bodies. Green: raised by rings, blue: lowered; full at 5 cm.",
             Self::Dye => "Light that a metre of the water lets through, by dye alone. White: no dye.",
+            Self::Ice => "Red: thickness, full at 1 m. Green: drawn cover. Blue: snow on it.",
         }
     }
 }

@@ -2,13 +2,14 @@
 use super::{
     SurfaceView, WaterSurface,
     gpu::GpuSurface,
+    ice::write_ice,
     material::SurfaceMaterial,
     ripples::Ripples,
     sync::{GroundTextures, SurfaceOf, SurfaceShape},
     viewer::{ViewerData, Viewers},
 };
 use crate::{
-    body::{Fresnel, ResolvedWater, WaterFlow, WaterFoam, WaterLighting, WaterOptics},
+    body::{Fresnel, ResolvedWater, WaterFlow, WaterFoam, WaterIce, WaterLighting, WaterOptics},
     reflection::{MirrorKey, Mirrors, WaterReflection},
     report::Reported,
     simulation::{FieldPictures, FieldWindow},
@@ -37,6 +38,7 @@ type Waters<'w, 's> = Query<
         &'static WaterReflection,
         (&'static WaterFoam, &'static FieldWindow, &'static FieldPictures),
         &'static WaterLighting,
+        Option<&'static WaterIce>,
     ),
 >;
 
@@ -62,7 +64,7 @@ pub(super) fn write_surfaces(
     let plain_sky = plain_sky.get_or_insert_with(|| images.add(white_cube())).clone();
     for (surface, shape, material_handle) in &surfaces {
         let (Ok(water), Some(viewer)) = (waters.get(surface.water), viewers.get(surface.viewer)) else { continue };
-        let (entity, resolved, settings, ripples, optics, reflection, (foam, window, pictures), lighting) = water;
+        let (entity, resolved, settings, ripples, optics, reflection, (foam, window, pictures), lighting, ice) = water;
         let mut gpu = GpuSurface::default();
         let mut textures = Textures::default();
         write_frame(&mut gpu, resolved, shape, &viewer);
@@ -73,6 +75,7 @@ pub(super) fn write_surfaces(
         write_field(&mut gpu, window, pictures);
         write_foam(&mut gpu, entity, foam, ripples, &mut reported);
         write_lighting(&mut gpu, entity, lighting, &mut reported);
+        let ice = write_ice(&mut gpu, entity, ice, resolved, &mut ground, &mut images, &mut reported);
         write_sky(&mut gpu, &mut textures, &viewer, &clear_color, &plain_sky, &assets);
 
         let Some(material) = materials.get(material_handle) else { continue };
@@ -84,6 +87,8 @@ pub(super) fn write_surfaces(
             flow: textures.flow,
             field_rings: pictures.rings.clone(),
             field_matter: pictures.matter.clone(),
+            ice_order: ice.as_ref().map(|ice| ice.order.clone()),
+            ice_tile: ice.map(|ice| ice.tile),
             ..material.clone()
         };
         if let Some(mut buffer) = buffers.get_mut(&wanted.surface) {
@@ -181,6 +186,7 @@ fn write_detail(
         SurfaceView::Foam => 10,
         SurfaceView::Interaction => 11,
         SurfaceView::Dye => 12,
+        SurfaceView::Ice => 13,
     };
 }
 
