@@ -15,6 +15,7 @@ use bevy::{
     core_pipeline::tonemapping::Tonemapping,
     light::CascadeShadowConfigBuilder,
     prelude::*,
+    render::view::{ColorGrading, ColorGradingGlobal},
 };
 use bevy_freshet::{
     buoyancy::{Buoyancy, ReturnTo},
@@ -175,8 +176,15 @@ fn light(mut commands: Commands, scene: Res<Scene>, canvas: Res<Canvas>) {
         Transform::from_translation(scene.view.eye + Vec3::Y * LEVEL)
             .looking_at(scene.view.target + Vec3::Y * LEVEL, Vec3::Y),
     ));
-    if elevation < 15.0 {
-        camera.insert(StarFilter::default());
+    if elevation < 0.0 {
+        // The glare of lantern and moon, and what the eye makes of colours in the dark: paler and bluer (Purkinje 1825).
+        let global = ColorGradingGlobal { temperature: -0.1, tint: 0.06, post_saturation: 0.75, ..default() };
+        camera.insert((
+            StarFilter { intensity: 0.2, threshold: 8.0, limit: 60.0, length: 0.06, ..default() },
+            ColorGrading { global, ..default() },
+        ));
+    } else if elevation < 15.0 {
+        camera.insert(StarFilter { intensity: 1.5, threshold: 60.0, limit: 400.0, length: 0.07, ..default() });
     }
 }
 

@@ -47,8 +47,7 @@ fn a_bright_pixel_has_arms_at_the_stated_angles() {
         for arm in 0..arms {
             let turn = |share: f32| Vec2::from_angle(angle + (arm as f32 + share) * TAU / arms as f32);
             for distance in [12.0, 24.0] {
-                let (on, between) =
-                    (around(&picture, turn(0.0) * distance), around(&picture, turn(0.5) * distance));
+                let (on, between) = (around(&picture, turn(0.0) * distance), around(&picture, turn(0.5) * distance));
                 assert!(on > 0.01 && between < 0.05 * on, "{arms} arms, {arm}, {distance} px: {on}, {between}");
             }
         }

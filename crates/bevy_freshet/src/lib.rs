@@ -29,7 +29,9 @@ pub mod prelude {
     pub use crate::{
         WaterPlugin, WaterSystems,
         bed::BedShading,
-        body::{Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterInteraction, WaterLighting, WaterOptics, WaterWaves},
+        body::{
+            Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterInteraction, WaterLighting, WaterOptics, WaterWaves,
+        },
         query::{WaterQuery, WaterSample},
         reflection::WaterReflection,
         star_filter::{StarFilter, StarFilterPlugin},

@@ -46,8 +46,7 @@ pub(super) fn add_stars(radiance: &mut Cubemap, seed: u32, through: impl Fn(usiz
     let size = radiance.size;
     for star in stars(seed).filter(|star| star.direction.y > 0.0) {
         let texel = Cubemap::texel_towards(size, star.direction);
-        radiance.texels[texel] +=
-            star.illuminance * through(texel, star.direction) / Cubemap::solid_angle(size, texel);
+        radiance.texels[texel] += star.illuminance * through(texel, star.direction) / Cubemap::solid_angle(size, texel);
     }
 }
 

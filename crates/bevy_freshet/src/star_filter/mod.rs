@@ -58,9 +58,6 @@ impl Plugin for StarFilterPlugin {
                     prepare::prepare_star_passes.in_set(RenderSystems::PrepareResources),
                 ),
             )
-            .add_systems(
-                Core3d,
-                pass::star_filter.after(bloom).before(tonemapping).in_set(Core3dSystems::PostProcess),
-            );
+            .add_systems(Core3d, pass::star_filter.after(bloom).before(tonemapping).in_set(Core3dSystems::PostProcess));
     }
 }

@@ -103,9 +103,7 @@ pub(super) fn prepare_star_passes(
             stars: texture("star_filter_stars"),
             bright_offset: push(&frame),
             composite_offset: push(&frame),
-            arm_offsets: arms(filter, half.as_vec2())
-                .map(|passes| passes.iter().map(&mut push).collect())
-                .collect(),
+            arm_offsets: arms(filter, half.as_vec2()).map(|passes| passes.iter().map(&mut push).collect()).collect(),
         });
     }
     uniforms.0.write_buffer(&device, &queue);
