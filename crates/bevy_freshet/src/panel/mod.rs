@@ -11,6 +11,7 @@
 //! stand still.
 mod actions;
 mod attach;
+mod group;
 mod groups;
 mod hold;
 mod orbit;
@@ -68,7 +69,7 @@ pub struct WaterPanel {
     /// The water whose settings are shown; without it the first one.
     pub water: Option<Entity>,
     preset: presets::PresetChoice,
-    pending: rows::Pending,
+    pending: group::Pending,
     places: HashMap<&'static str, Rect>,
 }
 
