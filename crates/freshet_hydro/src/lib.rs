@@ -7,5 +7,6 @@ pub mod fill;
 pub mod flow;
 pub mod grid;
 pub mod optics;
+pub mod silhouette;
 pub mod voxels;
 pub mod waves;
