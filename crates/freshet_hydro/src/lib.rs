@@ -7,6 +7,7 @@ pub mod fill;
 pub mod flow;
 pub mod grid;
 pub mod optics;
+pub mod rain;
 pub mod silhouette;
 pub mod voxels;
 pub mod waves;

@@ -68,8 +68,8 @@ fn normal_of(slope: vec2<f32>) -> vec3<f32> {
 fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(0) vec4<f32> {
     let pixel = in.position.xy;
     let still_depth = ground::still_depth(in.rest);
-    let field = field::at(in.rest);
-    let facet = facet(in.rest, still_depth, field.slope);
+    let fields = field::at(in.rest);
+    let facet = facet(in.rest, still_depth, fields.slope);
     let normal = normal_of(facet.slope);
     let to_eye = scene::direction_to_eye(in.world);
     let behind = scene::behind(pixel);
@@ -95,7 +95,7 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
         color += lit.glitter * surface.reflectivity;
     }
     color = mix(color, surface.dull_color * lit.below, surface.dullness);
-    color = mix(color, foam::color(lit.above), foam::cover(in.rest, field.foam));
+    color = mix(color, foam::color(lit.above), foam::cover(in.rest, fields.foam));
     if (surface.flags & types::FLAG_FOG) != 0u {
         color = scene::with_fog(color, fog);
     }
