@@ -9,6 +9,7 @@ pub mod bed;
 pub mod body;
 #[cfg(feature = "rapier")]
 pub mod buoyancy;
+pub mod interaction;
 #[cfg(test)]
 mod layout;
 pub mod query;
@@ -29,7 +30,8 @@ pub mod prelude {
         WaterPlugin, WaterSystems,
         bed::BedShading,
         body::{Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterInteraction, WaterOptics, WaterWaves},
-        query::{WaterQuery, WaterSample},
+        interaction::{Disturb, DisturbsWater, DyesWater, WaterTouch, WaterTouchBlocked},
+        query::{WaterHit, WaterQuery, WaterSample},
         reflection::WaterReflection,
         surface::{NoWater, SurfaceView, WaterSurface},
     };
@@ -49,7 +51,7 @@ pub struct WaterPlugin;
 
 impl Plugin for WaterPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins(body::BodyPlugin);
+        app.add_plugins((body::BodyPlugin, interaction::InteractionPlugin));
         #[cfg(feature = "rapier")]
         app.add_plugins(buoyancy::BuoyancyPlugin);
         if app.get_sub_app(RenderApp).is_some() {

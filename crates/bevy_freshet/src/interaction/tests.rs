@@ -1,0 +1,407 @@
+//! What lands in the deposits of a water, against bodies and rain in closed form.
+use super::{Disturb, DisturbsWater, DyesWater, InteractionPlugin};
+use crate::{
+    body::{BodyPlugin, Water, WaterBed, WaterInteraction, WaterWaves, Wave},
+    simulation::{Deposits, FieldWindow, SilhouetteCell, Stroke},
+};
+use bevy::{prelude::*, time::TimeUpdateStrategy, transform::TransformPlugin};
+use core::{f32::consts::PI, time::Duration};
+use freshet_hydro::rain::Rain;
+
+const CELL: f32 = 0.1;
+const LEVEL: f32 = 1.3;
+const FRAME: f32 = 1.0 / 60.0;
+/// A window of 12.8 m × 12.8 m in the middle of the water.
+const WINDOW: FieldWindow = FieldWindow { first: IVec2::splat(-64), size: UVec2::splat(128), cell: CELL };
+/// Water that is neither at the origin nor aligned with the world.
+const PLACE: Vec3 = vec3(31.0, LEVEL, -17.0);
+const YAW: f32 = 0.7;
+
+struct Pond {
+    app: App,
+    water: Entity,
+}
+
+impl Pond {
+    fn new(waves: WaterWaves) -> Self {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default()))
+            .init_asset::<Mesh>()
+            .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(FRAME)))
+            .add_plugins((BodyPlugin, InteractionPlugin));
+        app.finish();
+        app.cleanup();
+        let pose = Transform::from_translation(PLACE).with_rotation(Quat::from_rotation_y(YAW));
+        let water = app.world_mut().spawn((Water::new(Vec2::splat(40.0)), waves, WINDOW, pose)).id();
+        app.update();
+        Self { app, water }
+    }
+
+    fn still() -> Self {
+        Self::new(WaterWaves::still())
+    }
+
+    /// A body of `mesh` at `pose` in the frame of the water.
+    fn body(&mut self, mesh: impl Into<Mesh>, pose: Transform) -> Entity {
+        let mesh = self.app.world_mut().resource_mut::<Assets<Mesh>>().add(mesh);
+        let bundle = (DisturbsWater, Mesh3d(mesh), self.world(pose));
+        self.app.world_mut().spawn(bundle).id()
+    }
+
+    fn world(&self, pose: Transform) -> Transform {
+        *self.app.world().get::<Transform>(self.water).unwrap() * pose
+    }
+
+    fn deposits(&mut self) -> Deposits {
+        self.app.update();
+        self.app.world().get::<Deposits>(self.water).unwrap().clone()
+    }
+
+    fn cells(&mut self) -> Vec<SilhouetteCell> {
+        self.deposits().silhouettes
+    }
+
+    fn strokes(&mut self) -> Vec<Stroke> {
+        self.deposits().strokes
+    }
+
+    fn set(&mut self, interaction: WaterInteraction) {
+        self.app.world_mut().entity_mut(self.water).insert(interaction);
+    }
+
+    fn stop_the_clock(&mut self) {
+        self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
+    }
+}
+
+fn area(cells: &[SilhouetteCell]) -> f32 {
+    cells.iter().map(|cell| cell.cover * CELL * CELL).sum()
+}
+
+fn volume(cells: &[SilhouetteCell]) -> f32 {
+    cells.iter().map(|cell| cell.draft * CELL * CELL).sum()
+}
+
+fn place(cell: &SilhouetteCell) -> Vec2 {
+    WINDOW.origin() + (cell.cell.as_vec2() + 0.5) * CELL
+}
+
+fn assert_near(found: f32, exact: f32, share: f32, what: &str) {
+    assert!((found - exact).abs() <= share * exact.abs(), "{what}: {found} instead of {exact}");
+}
+
+fn at(x: f32, y: f32, z: f32) -> Transform {
+    Transform::from_xyz(x, y, z)
+}
+
+#[test]
+fn silhouettes_are_the_sections_of_the_bodies() {
+    let turned = Quat::from_euler(EulerRot::XYZ, 0.0, 0.4, 0.0);
+    let ball = Sphere::new(0.8).mesh().uv(96, 64);
+    let torus = Torus::new(0.5, 1.5).mesh().minor_resolution(48).major_resolution(96).build();
+    let cap = |depth: f32| (PI * depth * (1.6 - depth), PI * depth * depth * (2.4 - depth) / 3.0);
+    let bodies: [(Mesh, Transform, (f32, f32)); 4] = [
+        (Cuboid::new(1.0, 0.8, 1.4).into(), at(1.03, 0.1, -0.4).with_rotation(turned), (1.4, 1.4 * 0.3)),
+        (ball.clone().into(), at(-2.0, 0.3, 1.0), cap(0.5)),
+        // A squeezed and mirrored sphere, an ellipsoid.
+        (ball.into(), at(0.0, 0.0, 0.0).with_scale(vec3(-2.0, 0.5, 1.0)), (2.0 * cap(0.8).0, cap(0.8).1)),
+        (torus, at(0.5, 0.0, 0.2), (PI * (2.25 - 0.25), PI * PI * 0.25)),
+    ];
+    for (i, (mesh, pose, (section, displaced))) in bodies.into_iter().enumerate() {
+        let mut pond = Pond::still();
+        pond.body(mesh, pose);
+        let cells = pond.cells();
+        assert_near(area(&cells), section, 0.02, &format!("section of body {i}"));
+        assert_near(volume(&cells), displaced, 0.02, &format!("displaced volume of body {i}"));
+        let centroid = cells.iter().map(|c| place(c) * c.cover * CELL * CELL).sum::<Vec2>() / area(&cells);
+        assert!(centroid.distance(pose.translation.xz()) < 0.02, "body {i} is at {centroid}");
+        let middle = cells.iter().find(|c| place(c).distance(pose.translation.xz()) < 0.08);
+        assert_eq!(middle.is_none(), i == 3, "only the torus has a hole");
+    }
+}
+
+#[test]
+fn parts_of_a_body_are_cut_together_and_bodies_share_cells() {
+    let mut pond = Pond::still();
+    let body = pond.body(Cuboid::new(1.0, 1.0, 1.0), at(0.0, 0.0, 0.0));
+    let mesh = pond.app.world().get::<Mesh3d>(body).unwrap().clone();
+    pond.app.world_mut().spawn((mesh.clone(), at(2.0, 0.25, 0.0), ChildOf(body)));
+    let cells = pond.cells();
+    assert_near(area(&cells), 2.0, 1e-3, "two boxes");
+    assert_near(volume(&cells), 0.75, 1e-3, "two boxes displace");
+
+    // A second body across the first: its area counts once, its volume too.
+    let across = at(0.5, 0.0, 0.0);
+    pond.body(Cuboid::new(1.0, 1.0, 1.0), across);
+    let cells = pond.cells();
+    assert_near(area(&cells), 2.5, 1e-3, "overlapping");
+    assert_near(volume(&cells), 1.25, 1e-3, "overlapping boxes displace");
+    assert!(cells.iter().all(|cell| cell.cover <= 1.0));
+    let mut places: Vec<UVec2> = cells.iter().map(|cell| cell.cell).collect();
+    places.dedup();
+    assert_eq!(places.len(), cells.len(), "each cell once");
+}
+
+#[test]
+fn hidden_bodies_and_those_beside_the_window_leave_nothing() {
+    for pose in [at(0.0, 0.51, 0.0), at(0.0, -0.51, 0.0), at(0.0, 40.0, 0.0), at(8.0, 0.0, 0.0), at(0.0, 0.0, 90.0)] {
+        let mut pond = Pond::still();
+        pond.body(Cuboid::from_length(1.0), pose);
+        assert_eq!(pond.cells(), [], "{}", pose.translation);
+    }
+    // On the rim of the window, half of it.
+    let mut pond = Pond::still();
+    pond.body(Cuboid::from_length(1.0), at(6.4, 0.0, 0.0));
+    let cells = pond.cells();
+    assert_near(area(&cells), 0.5, 1e-3, "half in the window");
+    assert_near(volume(&cells), 0.25, 1e-3, "half in the window");
+    assert!(cells.iter().all(|cell| cell.cell.cmplt(WINDOW.size).all()));
+    // Without a window nothing is done.
+    pond.app.world_mut().entity_mut(pond.water).insert(FieldWindow::default());
+    assert_eq!(pond.cells(), []);
+}
+
+#[test]
+fn dry_ground_is_not_covered() {
+    let mut pond = Pond::still();
+    let bed = WaterBed::from_fn(UVec2::splat(80), 0.5, |p| if p.x > 0.0 { 1.0 } else { -2.0 }).unwrap();
+    let pose = pond.world(Transform::IDENTITY);
+    pond.app.world_mut().spawn((bed, pose));
+    pond.body(Cuboid::new(4.0, 1.0, 1.0), Transform::IDENTITY);
+    assert!(pond.cells().iter().all(|cell| place(cell).x < 0.3));
+    assert!(area(&pond.cells()) > 1.5);
+}
+
+#[test]
+fn a_diving_ball_lets_go_without_a_jump() {
+    let mut pond = Pond::still();
+    let ball = pond.body(Sphere::new(0.5).mesh().uv(64, 48), Transform::IDENTITY);
+    let mut last = f32::NAN;
+    for i in 0..=100 {
+        let pose = pond.world(at(0.0, -0.5 * i as f32 / 100.0 - 0.001, 0.0));
+        pond.app.world_mut().entity_mut(ball).insert(pose);
+        let now = volume(&pond.cells());
+        // The whole ball is 0.52 m³; it dives from half to whole in 100 steps.
+        assert!(!((now - last).abs() > 0.1), "step {i}: from {last} to {now} m³");
+        last = now;
+    }
+    assert!(last < 0.02, "{last} m³ are left");
+}
+
+#[test]
+fn waves_shift_the_waterline() {
+    let wave = Wave { direction: vec2(1.0, 0.3), wavelength: 6.0, steepness: 0.25, phase: 0.4 };
+    let mut pond = Pond::new(WaterWaves { trains: vec![wave], fade_depth: 0.0, ..WaterWaves::still() });
+    pond.stop_the_clock();
+    pond.body(Cuboid::new(1.0, 4.0, 1.5), at(0.7, 0.0, 0.3));
+    let cells = pond.cells();
+    assert_near(area(&cells), 1.5, 0.01, "an upright pillar keeps its section");
+    let water = pond.app.world().get::<crate::body::ResolvedWater>(pond.water).unwrap();
+    let n = 30;
+    let heights = (0..n * n).map(|i| {
+        let place = vec2(0.2, -0.45) + vec2((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32 * vec2(1.0, 1.5);
+        water.elevation(place)
+    });
+    let mean = heights.sum::<f32>() / (n * n) as f32;
+    assert!(mean.abs() > 0.05, "the wave must show: {mean} m");
+    assert_near(volume(&cells), 1.5 * (2.0 + mean), 0.01, "displaced volume under the wave");
+}
+
+#[test]
+fn cells_move_with_their_body() {
+    let (velocity, spin) = (vec3(0.6, 0.0, -0.3), 0.8);
+    let mut pond = Pond::still();
+    let body = pond.body(Cuboid::new(1.0, 1.0, 1.0), Transform::IDENTITY);
+    let mut cells = pond.cells();
+    assert!(cells.iter().all(|cell| cell.velocity == Vec2::ZERO), "no velocity in the first frame");
+    for i in 1..=60 {
+        let time = i as f32 * FRAME;
+        let pose = Transform::from_translation(velocity * time).with_rotation(Quat::from_rotation_y(spin * time));
+        let pose = pond.world(pose);
+        pond.app.world_mut().entity_mut(body).insert(pose);
+        cells = pond.cells();
+    }
+    for cell in &cells {
+        let arm = place(cell) - velocity.xz();
+        // ω × r about y: (ω z, −ω x).
+        let exact = velocity.xz() + spin * vec2(arm.y, -arm.x);
+        assert!(cell.velocity.distance(exact) < 0.02, "{}: {} instead of {exact}", cell.cell, cell.velocity);
+    }
+    // While the clock stands still the body keeps its motion.
+    pond.stop_the_clock();
+    assert_eq!(pond.cells(), cells);
+}
+
+#[test]
+fn a_teleport_is_no_motion() {
+    let mut pond = Pond::still();
+    let body = pond.body(Cuboid::from_length(1.0), at(-4.0, 0.0, 0.0));
+    pond.cells();
+    let pose = pond.world(at(4.0, 0.0, 0.0));
+    pond.app.world_mut().entity_mut(body).insert(pose);
+    let cells = pond.cells();
+    assert!(!cells.is_empty() && cells.iter().all(|cell| cell.velocity == Vec2::ZERO));
+}
+
+#[test]
+fn a_changed_mesh_is_read_again() {
+    let mut pond = Pond::still();
+    let body = pond.body(Cuboid::from_length(1.0), Transform::IDENTITY);
+    assert_near(area(&pond.cells()), 1.0, 1e-3, "before");
+    let id = pond.app.world().get::<Mesh3d>(body).unwrap().id();
+    let mut meshes = pond.app.world_mut().resource_mut::<Assets<Mesh>>();
+    *meshes.get_mut(id).unwrap() = Cuboid::from_length(2.0).into();
+    // The event comes with the end of the frame.
+    pond.cells();
+    assert_near(area(&pond.cells()), 4.0, 1e-3, "after");
+}
+
+#[test]
+fn disturbances_reach_their_water() {
+    let mut pond = Pond::still();
+    let there = pond.world(at(1.5, 0.0, -2.0)).translation;
+    let pushed = Disturb::push(there, 0.4, 0.1).with_foam(0.2);
+    let far = pond.world(at(15.0, 0.0, 0.0)).translation;
+    let nowhere = pond.world(at(50.0, 0.0, 0.0)).translation;
+    for disturb in [
+        pushed,
+        Disturb::dye(there, 0.001, vec3(1.0, 2.0, 3.0), 0.5).on(pond.water),
+        Disturb::drop(far, 0.1),
+        Disturb::drop(nowhere, 0.1),
+        Disturb::drop(Vec3::NAN, 0.1),
+        Disturb { volume: f32::NAN, dye: Vec3::splat(-1.0), ..Disturb::at(there, f32::NAN) },
+    ] {
+        pond.app.world_mut().write_message(disturb);
+    }
+    let strokes = pond.strokes();
+    let [push, dye, bad] = strokes[..] else { panic!("{strokes:?}") };
+    assert!(push.place.abs_diff_eq(vec2(1.5, -2.0), 1e-4));
+    assert_eq!((push.radius, push.foam), (0.4, 0.2));
+    assert_near(push.volume, -2.0 * PI * 0.16 * 0.1, 1e-5, "volume of a dent");
+    assert_eq!((dye.dye, dye.volume), (vec3(0.5, 1.0, 1.5), 0.0));
+    assert_near(dye.radius, 0.7 * CELL, 1e-5, "narrowest radius");
+    assert_eq!((bad.volume, bad.foam, bad.dye), (0.0, 0.0, Vec3::ZERO));
+    assert!(bad.radius > 0.0);
+    assert_eq!(pond.strokes(), [], "each works once");
+
+    pond.stop_the_clock();
+    pond.app.world_mut().write_message(pushed);
+    assert_eq!(pond.strokes(), [], "nothing happens while the clock stands still");
+}
+
+#[test]
+fn bodies_leak_dye_where_they_touch_the_water() {
+    let mut pond = Pond::still();
+    let source = DyesWater { absorption: vec3(10.0, 20.0, 30.0), rate: 0.06, radius: 0.3 };
+    // Afloat with its origin in the air; drowned, without a mesh; high and dry.
+    let afloat = pond.body(Cuboid::new(1.0, 1.0, 1.0), at(2.0, 0.4, 1.0));
+    pond.app.world_mut().entity_mut(afloat).insert(source);
+    for pose in [at(-1.0, -3.0, 0.5), at(-1.0, 0.5, 0.5)] {
+        let pose = pond.world(pose);
+        pond.app.world_mut().spawn((source, pose));
+    }
+    let strokes = pond.strokes();
+    let mut places: Vec<Vec2> = strokes.iter().map(|stroke| stroke.place).collect();
+    places.sort_by(|a, b| a.x.total_cmp(&b.x));
+    assert_eq!(places.len(), 2, "{strokes:?}");
+    assert!(places[0].abs_diff_eq(vec2(-1.0, 0.5), 1e-4) && places[1].abs_diff_eq(vec2(2.0, 1.0), 1e-4), "{places:?}");
+    for stroke in &strokes {
+        assert!((stroke.dye - vec3(0.01, 0.02, 0.03)).length() < 1e-6, "{}", stroke.dye);
+        assert_eq!((stroke.radius, stroke.volume), (0.3, 0.0));
+    }
+    pond.stop_the_clock();
+    assert_eq!(pond.strokes(), []);
+}
+
+#[test]
+fn colours_come_back_through_the_liquid() {
+    let absorption = super::absorption_from_color(LinearRgba::rgb(0.5, 0.1, 1.0), 0.2);
+    let seen = (-absorption * 0.2).map(f32::exp);
+    assert!(seen.abs_diff_eq(vec3(0.5, 0.1, 1.0), 1e-5), "{seen}");
+    assert!(super::absorption_from_color(Color::BLACK, 0.0).is_finite());
+}
+
+/// Strokes of `frames` frames of rain at `rate` mm/h.
+fn rain(pond: &mut Pond, rate: f32, frames: u32) -> Vec<Stroke> {
+    pond.set(WaterInteraction { rain: rate, ..default() });
+    (0..frames).flat_map(|_| pond.strokes()).collect()
+}
+
+#[test]
+fn as_many_drops_fall_as_the_rain_has() {
+    // A drizzle of so few drops that each is a stroke.
+    let mut pond = Pond::still();
+    let window = FieldWindow { first: IVec2::splat(-8), size: UVec2::splat(16), cell: CELL };
+    pond.app.world_mut().entity_mut(pond.water).insert(window);
+    let (rate, frames) = (0.5, 300);
+    let drops = Rain::of_rate(rate).unwrap();
+    let strokes = rain(&mut pond, rate, frames);
+    let mean = drops.drops * window.extent().element_product() * frames as f32 * FRAME;
+    // Five standard deviations of a Poisson count.
+    assert!((strokes.len() as f32 - mean).abs() < 5.0 * mean.sqrt(), "{} drops instead of {mean}", strokes.len());
+    assert!(strokes.iter().all(|s| (s.volume.abs() / drops.crater_volume - 1.0).abs() < 1e-5));
+    let (first, last) = (window.origin(), window.origin() + window.extent());
+    assert!(strokes.iter().all(|s| s.place.cmpge(first).all() && s.place.cmple(last).all()));
+    // Spread evenly, and as many up as down.
+    let centre = strokes.iter().map(|s| s.place).sum::<Vec2>() / strokes.len() as f32;
+    let deviation = window.extent().x / (12.0 * strokes.len() as f32).sqrt();
+    assert!(centre.length() < 5.0 * deviation, "{centre}");
+    let balance: f32 = strokes.iter().map(|s| s.volume.signum()).sum();
+    assert!(balance.abs() < 5.0 * (strokes.len() as f32).sqrt(), "{balance}");
+}
+
+#[test]
+fn a_downpour_keeps_its_energy_in_few_strokes() {
+    let mut pond = Pond::still();
+    let (rate, frames) = (50.0, 60);
+    let strokes = rain(&mut pond, rate, frames);
+    assert!(strokes.len() < 300 * frames as usize);
+    let drops = Rain::of_rate(rate).unwrap();
+    let energy: f32 = strokes.iter().map(|s| s.volume * s.volume).sum();
+    let count = drops.drops * WINDOW.extent().element_product() * frames as f32 * FRAME;
+    assert_near(energy, count * drops.crater_volume * drops.crater_volume, 0.04, "sum of squares");
+}
+
+#[test]
+fn rain_repeats_and_stops() {
+    let (a, b) = (rain(&mut Pond::still(), 5.0, 3), rain(&mut Pond::still(), 5.0, 3));
+    assert_eq!(a, b, "two runs have the same rain");
+    let mut pond = Pond::still();
+    let frames = [rain(&mut pond, 5.0, 1), rain(&mut pond, 5.0, 1)];
+    assert_ne!(frames[0], frames[1], "two frames have not");
+    assert_eq!(rain(&mut pond, 0.0, 5), []);
+    assert_eq!(rain(&mut pond, f32::NAN, 5), []);
+    pond.stop_the_clock();
+    assert_eq!(rain(&mut pond, 100.0, 5), [], "no rain while the clock stands still");
+}
+
+/// `cargo test -p bevy_freshet --all-features --lib fifty_balls -- --ignored --nocapture`
+#[test]
+#[ignore = "prints a time, and cannot fail"]
+fn cost_of_fifty_balls() {
+    for waves in [WaterWaves::still(), WaterWaves::wind(5.0, 5000.0, vec2(1.0, 0.4))] {
+        let trains = waves.trains.len();
+        let mut pond = Pond::new(waves);
+        pond.set(WaterInteraction { rain: 20.0, ..default() });
+        let median = |pond: &mut Pond| {
+            let mut times: Vec<f32> = (0..60)
+                .map(|_| {
+                    let start = std::time::Instant::now();
+                    pond.app.update();
+                    start.elapsed().as_secs_f32() * 1e3
+                })
+                .collect();
+            times.sort_by(f32::total_cmp);
+            times[times.len() / 2]
+        };
+        let without = median(&mut pond);
+        for i in 0..50 {
+            // 2 × 25 × 20 triangles.
+            let mesh = Sphere::new(0.45).mesh().uv(25, 20);
+            pond.body(mesh, at((i % 8) as f32 * 1.5 - 5.2, 0.1, (i / 8) as f32 * 1.5 - 5.2));
+        }
+        pond.app.update();
+        let with = median(&mut pond);
+        println!("{trains} trains: frame {without:.2} ms without, {with:.2} ms with 50 balls of 1000 triangles");
+    }
+}
