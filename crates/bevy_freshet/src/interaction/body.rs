@@ -22,7 +22,7 @@ const TELEPORT: f32 = 50.0;
 const SMOOTHING: f32 = 0.05;
 
 /// Velocity of a body: at its origin and its change in space, which holds rotation and change of scale alike.
-#[derive(Component, Clone, Debug, Default)]
+#[derive(Component, Clone, Debug)]
 pub(crate) struct BodyMotion {
     last: Option<Affine3A>,
     velocity: Vec3,
@@ -30,6 +30,12 @@ pub(crate) struct BodyMotion {
     gradient: Mat3,
     /// The water that the body is cut by, and the local centroid (xz, m) of the section.
     pub section: Option<(Entity, Vec2)>,
+}
+
+impl Default for BodyMotion {
+    fn default() -> Self {
+        Self { last: None, velocity: Vec3::ZERO, gradient: Mat3::ZERO, section: None }
+    }
 }
 
 impl BodyMotion {

@@ -15,6 +15,8 @@
 //!
 //! * A hull is displaced by what its meshes enclose: a boat without a deck is cut as the shell that it is, and water is
 //!   seen inside.
+//! * Waves are met at the vertices of a mesh: between them its faces are straight, so that a long face does not see a
+//!   short wave.
 //! * Skinned meshes are left out with a warning, morph targets count in their rest shape.
 mod body;
 mod disturb;

@@ -7,6 +7,9 @@ use bevy::{
 };
 use std::{fmt, sync::Arc};
 
+/// Distance, as a share of half the size of a mesh, within which vertices are the same.
+const WELD: f32 = 2e-6;
+
 /// The triangles of a mesh, looking outwards.
 pub(super) struct Shape {
     pub vertices: Vec<Vec3>,
@@ -52,14 +55,15 @@ impl Shape {
             Some(Indices::U32(indices)) => indices.clone(),
             None => (0..vertices.len() as u32).collect(),
         };
-        let triangles = indices.as_chunks::<3>().0.to_vec();
-        if triangles.is_empty() || mesh.primitive_topology() != PrimitiveTopology::TriangleList {
+        if indices.len() < 3 || mesh.primitive_topology() != PrimitiveTopology::TriangleList {
             return Err(Flaw::NoTriangles);
         }
         let sound = || vertices.iter().filter(|v| v.is_finite());
         let min = sound().copied().reduce(Vec3::min).ok_or(Flaw::NoTriangles)?;
         let max = sound().copied().reduce(Vec3::max).ok_or(Flaw::NoTriangles)?;
-        let mut shape = Self { triangles, center: 0.5 * (min + max), half: 0.5 * (max - min), vertices };
+        let (center, half) = (0.5 * (min + max), 0.5 * (max - min));
+        let (vertices, triangles) = weld(&vertices, indices.as_chunks::<3>().0, center, WELD * half.max_element());
+        let mut shape = Self { vertices, triangles, center, half };
         if shape.volume() < 0.0 {
             shape.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
         }
@@ -74,6 +78,33 @@ impl Shape {
             .filter_map(|&[a, b, c]| Some(corner(a)?.dot(corner(b)?.cross(corner(c)?)) / 6.0))
             .sum()
     }
+}
+
+/// Makes vertices that lie within about `grid` (m) of one another one, and leaves out triangles that have no area then.
+///
+/// Meshes repeat vertices for normals and seams, and the copies differ by rounding: sin 2π is not sin 0. The water could run
+/// between the sides of a seam, and the section would be open.
+fn weld(positions: &[Vec3], indices: &[[u32; 3]], center: Vec3, grid: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let mut known: HashMap<(IVec3, bool), u32> = HashMap::default();
+    let mut vertices = Vec::new();
+    let welded: Vec<u32> = positions
+        .iter()
+        .map(|&position| {
+            let key = ((position - center) / grid.max(f32::MIN_POSITIVE)).round().as_ivec3();
+            *known.entry((key, position.is_finite())).or_insert_with(|| {
+                vertices.push(position);
+                vertices.len() as u32 - 1
+            })
+        })
+        .collect();
+    let triangles = indices
+        .iter()
+        .filter_map(|triangle| {
+            let [Some(&a), Some(&b), Some(&c)] = triangle.map(|index| welded.get(index as usize)) else { return None };
+            (a != b && b != c && c != a).then_some([a, b, c])
+        })
+        .collect();
+    (vertices, triangles)
 }
 
 /// Shapes of meshes that have been read.

@@ -9,11 +9,14 @@ use crate::{
     simulation::{Deposits, FieldWindow, SilhouetteCell},
 };
 use bevy::{math::Affine3A, mesh::skinning::SkinnedMesh, prelude::*};
-use freshet_hydro::{grid::Grid, silhouette::Section};
+use freshet_hydro::{grid::Grid, silhouette::Section, waves::WaveTrain};
 use std::sync::Arc;
 
 /// Most places along an axis at which the waves are looked up for one body.
 const MOST_PLACES: f32 = 9.0;
+
+/// Root mean square error of the height of the waves that is allowed for, as a share of a cell.
+const HEIGHT_ERROR: f32 = 0.1;
 
 /// Most that the mean draft of a section can be of the body's depth under water. Where less than a quarter of a body's
 /// width still shows, its displaced volume goes to zero with its section, instead of vanishing in one frame when it dives.
@@ -108,7 +111,7 @@ impl Pen {
         if beside || min.y >= amplitude || max.y < -amplitude || window.size.min_element() == 0 {
             return None;
         }
-        let waves = Lattice::over(water, min.xz(), max.xz(), 2.0 * window.cell)?;
+        let waves = Lattice::over(water, min.xz(), max.xz(), HEIGHT_ERROR * window.cell);
         self.cut(parts, surface_from_world, &waves);
         let (area, centroid) = self.section.area_and_centroid()?;
         let draft = (self.section.volume() / area).clamp(0.0, MOST_DRAFT * self.section.depth());
@@ -156,25 +159,37 @@ fn bounds(parts: &[Part], surface_from_world: Affine3A) -> Option<(Vec3, Vec3)> 
 }
 
 /// Heights of the waves around a body, looked up at a few places: a search in the waves costs more than many triangles.
+#[derive(Default)]
 struct Lattice {
     center: Vec2,
-    heights: Grid<f32>,
+    /// None on level water.
+    heights: Option<Grid<f32>>,
 }
 
 impl Lattice {
-    /// Heights over the still surface between the corners `min` and `max`, `step` (m) apart, or farther under large bodies.
-    fn over(water: &ResolvedWater, min: Vec2, max: Vec2, step: f32) -> Option<Self> {
+    /// Heights over the still surface between the corners `min` and `max`, right within `error` (m) except under large
+    /// bodies.
+    ///
+    /// Linear interpolation of A cos(k x) over a step h errs by `h² k² A / 8` at most; the trains' errors are independent.
+    fn over(water: &ResolvedWater, min: Vec2, max: Vec2, error: f32) -> Self {
+        let trains = &water.waves.trains;
+        let curvature = |train: &WaveTrain| train.wave_vector.length_squared() * train.amplitude;
+        let curvature = (0.5 * trains.iter().map(|train| curvature(train).powi(2)).sum::<f32>()).sqrt();
+        if curvature <= 0.0 {
+            return Self::default();
+        }
         let (center, size) = (0.5 * (min + max), max - min);
-        let step = step.max(size.max_element() / (MOST_PLACES - 1.0));
+        let least = size.max_element() / (MOST_PLACES - 1.0);
+        let step = (8.0 * error / curvature).sqrt().max(least).min(size.max_element());
         let places = (size / step).ceil() + 1.0;
         let place = |cell: UVec2| center + (cell.as_vec2() + 0.5 - places / 2.0) * step;
-        let heights = Grid::from_fn(places.as_uvec2(), step, |cell| water.elevation(place(cell))).ok()?;
-        Some(Self { center, heights })
+        let heights = Grid::from_fn(places.as_uvec2(), step, |cell| water.elevation(place(cell)));
+        Self { center, heights: heights.ok() }
     }
 
     /// Height at local `place`, bilinear.
     fn at(&self, place: Vec2) -> f32 {
-        self.heights.sample(place - self.center)
+        self.heights.as_ref().map_or(0.0, |heights| heights.sample(place - self.center))
     }
 }
 

@@ -190,7 +190,7 @@ fn a_diving_ball_lets_go_without_a_jump() {
 
 #[test]
 fn waves_shift_the_waterline() {
-    let wave = Wave { direction: vec2(1.0, 0.3), wavelength: 6.0, steepness: 0.25, phase: 0.4 };
+    let wave = Wave { direction: vec2(1.0, 0.3), wavelength: 20.0, steepness: 0.2, phase: 0.0 };
     let mut pond = Pond::new(WaterWaves { trains: vec![wave], fade_depth: 0.0, ..WaterWaves::still() });
     pond.stop_the_clock();
     pond.body(Cuboid::new(1.0, 4.0, 1.5), at(0.7, 0.0, 0.3));
@@ -213,7 +213,7 @@ fn cells_move_with_their_body() {
     let mut pond = Pond::still();
     let body = pond.body(Cuboid::new(1.0, 1.0, 1.0), Transform::IDENTITY);
     let mut cells = pond.cells();
-    assert!(cells.iter().all(|cell| cell.velocity == Vec2::ZERO), "no velocity in the first frame");
+    assert!(cells.iter().all(|cell| cell.velocity == Vec2::ZERO), "velocity in the first frame: {:?}", cells[0]);
     for i in 1..=60 {
         let time = i as f32 * FRAME;
         let pose = Transform::from_translation(velocity * time).with_rotation(Quat::from_rotation_y(spin * time));
@@ -382,8 +382,10 @@ fn cost_of_fifty_balls() {
     for waves in [WaterWaves::still(), WaterWaves::wind(5.0, 5000.0, vec2(1.0, 0.4))] {
         let trains = waves.trains.len();
         let mut pond = Pond::new(waves);
+        let cells = FieldWindow { first: IVec2::splat(-26), size: UVec2::splat(52), cell: 0.25 };
+        pond.app.world_mut().entity_mut(pond.water).insert(cells);
         pond.set(WaterInteraction { rain: 20.0, ..default() });
-        let median = |pond: &mut Pond| {
+        let measure = |pond: &mut Pond| {
             let mut times: Vec<f32> = (0..60)
                 .map(|_| {
                     let start = std::time::Instant::now();
@@ -392,16 +394,16 @@ fn cost_of_fifty_balls() {
                 })
                 .collect();
             times.sort_by(f32::total_cmp);
-            times[times.len() / 2]
+            (times[0], times[times.len() / 2])
         };
-        let without = median(&mut pond);
+        let without = measure(&mut pond);
         for i in 0..50 {
             // 2 × 25 × 20 triangles.
             let mesh = Sphere::new(0.45).mesh().uv(25, 20);
             pond.body(mesh, at((i % 8) as f32 * 1.5 - 5.2, 0.1, (i / 8) as f32 * 1.5 - 5.2));
         }
         pond.app.update();
-        let with = median(&mut pond);
-        println!("{trains} trains: frame {without:.2} ms without, {with:.2} ms with 50 balls of 1000 triangles");
+        let with = measure(&mut pond);
+        println!("{trains} trains: quickest and median frame {without:.2?} ms, {with:.2?} ms with 50 balls of 1000 triangles");
     }
 }

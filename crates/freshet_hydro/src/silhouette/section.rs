@@ -31,6 +31,10 @@ impl Section {
     pub fn add(&mut self, vertices: &[Vec3], triangles: impl IntoIterator<Item = [u32; 3]>) {
         for triangle in triangles {
             let [Some(&a), Some(&b), Some(&c)] = triangle.map(|index| vertices.get(index as usize)) else { continue };
+            // Most triangles are wholly above, and this is the quickest way past them.
+            if a.y >= 0.0 && b.y >= 0.0 && c.y >= 0.0 {
+                continue;
+            }
             if a.is_finite() && b.is_finite() && c.is_finite() {
                 self.add_triangle([a, b, c]);
             }
