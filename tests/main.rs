@@ -14,5 +14,6 @@ mod reflection;
 mod river;
 mod robustness;
 mod shore;
+mod touch;
 mod warnings;
 mod waves;

@@ -55,9 +55,7 @@ impl Plugin for InteractionPlugin {
                     clear_deposits,
                     body::track_motion,
                     silhouette::draw_silhouettes,
-                    (dye::leak, touch::touch_water, disturb::apply_disturbances, rain::fall)
-                        .chain()
-                        .run_if(clock_runs),
+                    (dye::leak, touch::touch_water, disturb::apply_disturbances, rain::fall).chain().run_if(clock_runs),
                 )
                     .chain()
                     .in_set(WaterSystems::Displace),

@@ -73,10 +73,7 @@ impl Shape {
     /// Signed volume: negative if the triangles look inwards.
     fn volume(&self) -> f32 {
         let corner = |index: u32| self.vertices.get(index as usize).map(|v| v - self.center).filter(|v| v.is_finite());
-        self.triangles
-            .iter()
-            .filter_map(|&[a, b, c]| Some(corner(a)?.dot(corner(b)?.cross(corner(c)?)) / 6.0))
-            .sum()
+        self.triangles.iter().filter_map(|&[a, b, c]| Some(corner(a)?.dot(corner(b)?.cross(corner(c)?)) / 6.0)).sum()
     }
 }
 
@@ -129,5 +126,46 @@ impl Shapes {
                 self.0.remove(id);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::asset::RenderAssetUsages;
+
+    fn flaw(mesh: &Mesh) -> Option<Flaw> {
+        Shape::read(mesh).err()
+    }
+
+    #[test]
+    fn unusable_meshes_are_known() {
+        let corners = vec![[0.0, 0.0, 1.0]; 6];
+        let lines = Mesh::new(PrimitiveTopology::LineList, RenderAssetUsages::default())
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, corners.clone());
+        let empty = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default());
+        let nowhere = empty.clone().with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vec![[f32::NAN; 3]; 6]);
+        for mesh in [&lines, &empty, &nowhere] {
+            assert_eq!(flaw(mesh), Some(Flaw::NoTriangles));
+        }
+        let mut extracted = Mesh::from(Cuboid::default());
+        extracted.take_gpu_data().unwrap();
+        assert_eq!(flaw(&extracted), Some(Flaw::NotInMainWorld));
+        // All corners in one place make no triangle, but no trouble either.
+        let point = empty.with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, corners);
+        assert_eq!(Shape::read(&point).ok().unwrap().triangles, [[0; 3]; 0]);
+    }
+
+    #[test]
+    fn seams_are_welded_and_insides_turned_out() {
+        let sphere = Sphere::new(2.0).mesh().uv(32, 18);
+        let shape = Shape::read(&sphere).ok().unwrap();
+        // Two poles and 17 rings; each edge has two triangles: V − E + F = 2 with 2 E = 3 F.
+        assert_eq!(shape.vertices.len(), 2 + 17 * 32);
+        assert_eq!(shape.vertices.len() as i32 - shape.triangles.len() as i32 / 2, 2);
+        let Some(Indices::U32(mut indices)) = sphere.indices().cloned() else { panic!("no indices") };
+        indices.reverse();
+        let inside_out = Shape::read(&sphere.with_inserted_indices(Indices::U32(indices))).ok().unwrap();
+        assert!((inside_out.volume() / shape.volume() - 1.0).abs() < 1e-5 && shape.volume() > 0.0);
     }
 }

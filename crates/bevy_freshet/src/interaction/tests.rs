@@ -4,7 +4,7 @@ use crate::{
     body::{BodyPlugin, Water, WaterBed, WaterInteraction, WaterWaves, Wave},
     simulation::{Deposits, FieldWindow, SilhouetteCell, Stroke},
 };
-use bevy::{prelude::*, time::TimeUpdateStrategy, transform::TransformPlugin};
+use bevy::{mesh::skinning::SkinnedMesh, prelude::*, time::TimeUpdateStrategy, transform::TransformPlugin};
 use core::{f32::consts::PI, time::Duration};
 use freshet_hydro::rain::Rain;
 
@@ -244,6 +244,14 @@ fn a_teleport_is_no_motion() {
 }
 
 #[test]
+fn skinned_meshes_are_left_out() {
+    let mut pond = Pond::still();
+    let body = pond.body(Cuboid::from_length(1.0), Transform::IDENTITY);
+    pond.app.world_mut().entity_mut(body).insert(SkinnedMesh::default());
+    assert_eq!(pond.cells(), []);
+}
+
+#[test]
 fn a_changed_mesh_is_read_again() {
     let mut pond = Pond::still();
     let body = pond.body(Cuboid::from_length(1.0), Transform::IDENTITY);
@@ -404,6 +412,8 @@ fn cost_of_fifty_balls() {
         }
         pond.app.update();
         let with = measure(&mut pond);
-        println!("{trains} trains: quickest and median frame {without:.2?} ms, {with:.2?} ms with 50 balls of 1000 triangles");
+        println!(
+            "{trains} trains: quickest and median frame {without:.2?} ms, {with:.2?} ms with 50 balls of 1000 triangles"
+        );
     }
 }

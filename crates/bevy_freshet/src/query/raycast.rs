@@ -95,6 +95,9 @@ fn steepest_slope(water: &ResolvedWater) -> f32 {
 
 /// Where a ray from `origin` is inside the box from −`half` to `half`, at most `max` away.
 fn inside_box(origin: Vec3A, direction: Vec3A, half: Vec3A, max: f32) -> Option<(f32, f32)> {
+    if !origin.is_finite() || max.is_nan() {
+        return None;
+    }
     let (mut from, mut to) = (0.0_f32, max);
     for axis in 0..3 {
         if direction[axis] == 0.0 {
@@ -106,5 +109,5 @@ fn inside_box(origin: Vec3A, direction: Vec3A, half: Vec3A, max: f32) -> Option<
         let (a, b) = ((-half[axis] - origin[axis]) / direction[axis], (half[axis] - origin[axis]) / direction[axis]);
         (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
     }
-    (from.is_finite() && from <= to).then_some((from, to))
+    (from <= to).then_some((from, to))
 }
