@@ -4,7 +4,10 @@
 mod common;
 
 use bevy::{camera::Hdr, prelude::*};
-use bevy_freshet::{prelude::*, sky::SkyPlugin};
+use bevy_freshet::{
+    prelude::*,
+    sky::{Sky, SkyPlugin, SkyView},
+};
 use bevy_rapier3d::prelude::*;
 use clap::Parser;
 use common::{Canvas, Options};
@@ -88,14 +91,12 @@ fn setup(
         Transform::from_xyz(-7.0, 0.0, -3.0),
     ));
 
-    commands.spawn((
-        DirectionalLight { illuminance: 40_000.0, shadow_maps_enabled: true, ..default() },
-        Transform::from_xyz(4.0, 6.0, -5.0).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
+    commands.spawn(Sky::with_sun(38.0, 215.0));
     // With `WaterTouch` the camera's viewer can reach into the water.
     commands.spawn((
         Camera3d::default(),
         Hdr,
+        SkyView { exposure: Some(0.3), ..default() },
         WaterTouch::default(),
         canvas.target(),
         Transform::from_xyz(-1.0, 7.0, 10.0).looking_at(vec3(-0.5, -0.5, 0.0), Vec3::Y),
