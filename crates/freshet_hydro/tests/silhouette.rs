@@ -1,5 +1,4 @@
 //! Sections, covers and volumes of bodies at the waterline, against solids in closed form.
-#![expect(clippy::unwrap_used, reason = "a test ends where something is wrong")]
 
 use std::f32::consts::{PI, TAU};
 
