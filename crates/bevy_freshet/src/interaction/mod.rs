@@ -1,6 +1,6 @@
 //! What touches the water: bodies, rain, touches and spilled liquid.
 //!
-//! Everything here ends as the [`Deposits`] of a water, once per frame on the virtual clock, for the simulated fields:
+//! Everything here ends as deposits of a water, once per frame on the virtual clock, for the simulated fields:
 //!
 //! * [`DisturbsWater`] on an entity cuts its meshes with the waves: their silhouettes at the waterline, and the water that
 //!   they displace. Floating bodies have it by themselves.
