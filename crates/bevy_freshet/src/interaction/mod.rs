@@ -51,7 +51,10 @@ impl Plugin for InteractionPlugin {
             .add_message::<AssetEvent<Mesh>>()
             .configure_sets(
                 PostUpdate,
-                WaterSystems::Displace.after(WaterSystems::Resolve).before(WaterSystems::Present),
+                (
+                    WaterSystems::Displace.after(WaterSystems::Resolve).before(WaterSystems::Present),
+                    FieldSystems::Deposit.in_set(WaterSystems::Displace),
+                ),
             )
             .add_systems(
                 PostUpdate,
@@ -62,7 +65,6 @@ impl Plugin for InteractionPlugin {
                     (dye::leak, touch::touch_water, disturb::apply_disturbances, rain::fall).chain().run_if(clock_runs),
                 )
                     .chain()
-                    .in_set(WaterSystems::Displace)
                     .in_set(FieldSystems::Deposit),
             );
     }
