@@ -84,7 +84,8 @@ fn setup(
         // Snow on gravel.
         let color = |height: f32| Vec4::from_array([0.05, 0.045, 0.04, 1.0]).lerp(Vec4::ONE, height);
         let positions = mesh.attribute(Mesh::ATTRIBUTE_POSITION).and_then(|positions| positions.as_float3());
-        let colors = positions.map(|p| p.iter().map(|p| color((p[1] * 10.0 + 1.5).clamp(0.0, 1.0)).to_array()).collect::<Vec<_>>());
+        let colors = positions
+            .map(|p| p.iter().map(|p| color((p[1] * 10.0 + 1.5).clamp(0.0, 1.0)).to_array()).collect::<Vec<_>>());
         mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors.unwrap_or_default());
         let snowy =
             StandardMaterial { base_color: Color::srgb(0.86, 0.88, 0.91), perceptual_roughness: 0.95, ..default() };
