@@ -21,6 +21,7 @@ mod river;
 mod robustness;
 mod shore;
 mod star_filter;
+mod touch;
 mod views;
 mod warnings;
 mod waves;

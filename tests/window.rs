@@ -181,7 +181,7 @@ const STEPS: [fn(&mut World, &mut Script) -> Option<()>; 10] = [
         Some(())
     },
     |world, _| (reflectivity(world) > 0.8).then(|| take_picture(world)),
-    |world, script| {
+    |_, script| {
         (script.pictures.len() == 3).then_some(())?;
         assert_picture_changed(&script.pictures[1], &script.pictures[2]);
         script.key("F1");

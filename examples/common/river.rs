@@ -17,6 +17,7 @@ use bevy::{
     core_pipeline::tonemapping::Tonemapping,
     light::CascadeShadowConfigBuilder,
     prelude::*,
+    render::view::{ColorGrading, ColorGradingGlobal},
 };
 use bevy_freshet::{
     buoyancy::ReturnTo,
@@ -156,8 +157,15 @@ fn light(mut commands: Commands, scene: Res<Scene>, canvas: Res<Canvas>) {
         FreeCamera::default(),
         view.pose(LEVEL),
     ));
-    if elevation < 10.0 {
-        camera.insert(StarFilter::default());
+    if view.is_night() {
+        // The glare of lantern and moon, and what the eye makes of colours in the dark: paler and bluer (Purkinje 1825).
+        let global = ColorGradingGlobal { temperature: -0.1, tint: 0.06, post_saturation: 0.75, ..default() };
+        camera.insert((
+            StarFilter { intensity: 0.2, threshold: 8.0, limit: 60.0, length: 0.06, ..default() },
+            ColorGrading { global, ..default() },
+        ));
+    } else if elevation < 10.0 {
+        camera.insert(StarFilter { intensity: 1.5, threshold: 60.0, limit: 400.0, length: 0.07, ..default() });
     }
 }
 

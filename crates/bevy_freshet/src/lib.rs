@@ -14,6 +14,7 @@ pub mod body;
 #[cfg(feature = "rapier")]
 pub mod buoyancy;
 pub mod features;
+pub mod interaction;
 #[cfg(test)]
 mod layout;
 #[cfg(feature = "panel")]
@@ -41,7 +42,8 @@ pub mod prelude {
             Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterIce, WaterInteraction, WaterLighting, WaterOptics,
             WaterWaves,
         },
-        query::{WaterQuery, WaterSample},
+        interaction::{Disturb, DisturbsWater, DyesWater, WaterTouch, WaterTouchBlocked},
+        query::{WaterHit, WaterQuery, WaterSample},
         reflection::WaterReflection,
         star_filter::{StarFilter, StarFilterPlugin},
         surface::{NoWater, SurfaceView, WaterSurface},
@@ -62,7 +64,7 @@ pub struct WaterPlugin;
 
 impl Plugin for WaterPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins(body::BodyPlugin);
+        app.add_plugins((body::BodyPlugin, interaction::InteractionPlugin));
         #[cfg(feature = "rapier")]
         app.add_plugins(buoyancy::BuoyancyPlugin);
         if app.get_sub_app(RenderApp).is_some() {

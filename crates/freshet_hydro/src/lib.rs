@@ -10,5 +10,7 @@ pub mod grid;
 pub mod ice;
 pub mod noise;
 pub mod optics;
+pub mod rain;
+pub mod silhouette;
 pub mod voxels;
 pub mod waves;

@@ -84,6 +84,12 @@ impl ResolvedWater {
         self.ice.as_ref().map_or(0.0, |ice| ice.level_drop * ice.thickness(place))
     }
 
+    /// Height of the waves over the still surface at local `place`, m, as if there were water everywhere.
+    pub fn elevation(&self, place: Vec2) -> f32 {
+        let rest = self.waves.rest_below(place, |rest| self.fade(rest));
+        self.waves.displacement(rest, self.fade(rest)).y
+    }
+
     /// The middle of the still surface, turned as the water.
     pub fn pose(&self) -> Transform {
         let (_, angle, center) = self.world_from_local.to_scale_angle_translation();

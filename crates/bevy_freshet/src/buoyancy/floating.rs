@@ -1,6 +1,7 @@
 //! What a game says about a floating body, and what it can read back.
 
 use super::hull::Hull;
+use crate::interaction::DisturbsWater;
 use bevy::prelude::*;
 use freshet_hydro::voxels::Drag;
 
@@ -9,10 +10,11 @@ use freshet_hydro::voxels::Drag;
 /// Beside a dynamic Rapier `RigidBody`. Its hull is the union of the body's colliders (its own and its children's,
 /// sensors excepted, of any closed shape, scaled as Rapier scales them), or, without a collider, the closed mesh of
 /// its `Mesh3d`. Shapes without an inside (half-spaces, height fields, polylines) are refused with a warning; an open
-/// triangle mesh floats as its convex hull, with a warning. Fixed and kinematic bodies are left alone.
+/// triangle mesh floats as its convex hull, with a warning. Fixed and kinematic bodies are left alone. The water answers
+/// the body's meshes, as it is [`DisturbsWater`] as well.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
-#[require(Buoyancy, Hull)]
+#[require(Buoyancy, Hull, DisturbsWater)]
 pub struct Floating {
     /// How heavy the body is. Default 500 kg/m³.
     pub weight: Weight,

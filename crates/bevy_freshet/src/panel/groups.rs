@@ -1,7 +1,8 @@
 //! What the panel offers: a table for each component.
 use super::{
+    group::{Group, Owner},
     orbit::OrbitCamera,
-    rows::{Group, Owner, choice, row},
+    rows::{choice, row},
 };
 use crate::{
     body::{Water, WaterFlow, WaterFoam, WaterInteraction, WaterOptics, WaterWaves},

@@ -11,6 +11,7 @@
 //! stand still.
 mod actions;
 mod attach;
+mod group;
 mod groups;
 mod hold;
 mod orbit;
@@ -24,7 +25,7 @@ pub use orbit::OrbitCamera;
 
 use bevy::{
     app::{RunFixedMainLoop, RunFixedMainLoopSystems},
-    camera_controller::free_camera::run_freecamera_controller,
+    camera_controller::free_camera::rotate_freecam_to,
     input::InputSystems,
     platform::collections::HashMap,
     prelude::*,
@@ -68,7 +69,7 @@ pub struct WaterPanel {
     /// The water whose settings are shown; without it the first one.
     pub water: Option<Entity>,
     preset: presets::PresetChoice,
-    pending: rows::Pending,
+    pending: group::Pending,
     places: HashMap<&'static str, Rect>,
 }
 
@@ -111,7 +112,7 @@ impl Plugin for WaterPanelPlugin {
         )
         .add_systems(
             RunFixedMainLoop,
-            orbit::orbit.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop).after(run_freecamera_controller),
+            orbit::orbit.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop).after(rotate_freecam_to),
         )
         .add_systems(EguiPrimaryContextPass, window::draw);
     }

@@ -1,33 +1,13 @@
-//! Controls for reflected fields: a row of the panel edits one field of one component.
-use super::WaterPanel;
+//! Controls for reflected values: a row of the panel edits one field of one component.
 use crate::body::Fresnel;
 use bevy::{
-    ecs::reflect::ReflectComponent,
-    platform::collections::HashMap,
     prelude::*,
-    reflect::{GetPath, PartialReflect, ReflectRef, TypeRegistry, enums::DynamicEnum, enums::DynamicVariant},
+    reflect::{
+        PartialReflect, ReflectRef,
+        enums::{DynamicEnum, DynamicVariant},
+    },
 };
 use bevy_egui::egui::{self, ComboBox, DragValue, Response, Slider, Ui};
-use core::any::TypeId;
-
-/// The entity on which a group's component is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Owner {
-    Water,
-    Sky,
-    /// The camera with the panel.
-    Camera,
-}
-
-/// The controls of one component.
-pub(super) struct Group {
-    pub title: &'static str,
-    pub owner: Owner,
-    pub component: fn() -> TypeId,
-    /// Whether a change counts only when the mouse is released: for what is expensive to change.
-    pub on_release: bool,
-    pub rows: &'static [Row],
-}
 
 /// The control of one field.
 pub(super) struct Row {
@@ -35,11 +15,11 @@ pub(super) struct Row {
     /// Path of the field in its component.
     pub path: &'static str,
     /// What the control offers, in shown units.
-    range: [f64; 2],
+    pub range: [f64; 2],
     unit: &'static str,
-    tip: &'static str,
+    pub tip: &'static str,
     /// Shown value for one of the field's.
-    factor: f64,
+    pub factor: f64,
     logarithmic: bool,
 }
 
@@ -70,6 +50,16 @@ impl Row {
         Self { logarithmic: true, ..self }
     }
 
+    /// What it means, with range and unit.
+    pub fn help(&self) -> String {
+        let Self { tip, range: [low, high], unit, .. } = self;
+        if unit.is_empty() && *low == 0.0 && *high == 1.0 {
+            (*tip).into()
+        } else {
+            format!("{tip}\n{low}…{high}{}", suffix(unit))
+        }
+    }
+
     /// Draws the control for `value`; what it was changed to, if it was. `None` inside where there is no control for the
     /// type.
     pub fn draw(&self, ui: &mut Ui, value: &dyn PartialReflect) -> Option<(Response, Option<Box<dyn PartialReflect>>)> {
@@ -90,7 +80,9 @@ impl Row {
             return Some(changed(response, vec2(x, y)));
         }
         if let Some(vector) = value.try_downcast_ref::<Vec3>() {
-            let (response, numbers) = self.numbers(ui, vector.to_array(), ["r ", "g ", "b "]);
+            // Places have axes, spectra have channels.
+            let names = if self.unit == "m" { ["x ", "y ", "z "] } else { ["r ", "g ", "b "] };
+            let (response, numbers) = self.numbers(ui, vector.to_array(), names);
             return Some(changed(response, Vec3::from_array(numbers)));
         }
         if let Some(color) = value.try_downcast_ref::<LinearRgba>() {
@@ -141,9 +133,9 @@ impl Row {
                     ui.add(DragValue::new(value).speed(speed).range(range).prefix(name).max_decimals(4))
                 })
                 .collect();
-            parts.into_iter().reduce(|all, part| all | part).unwrap_or_else(|| ui.label(self.label))
+            let label = ui.label(format!("{} {}", self.label, self.unit));
+            parts.into_iter().reduce(|all, part| all | part).unwrap_or(label)
         });
-        ui.indent(self.path, |ui| ui.weak(format!("{} {}", self.label, self.unit)));
         (response.inner, values)
     }
 
@@ -227,202 +219,5 @@ fn suffix(unit: &str) -> String {
     match unit {
         "" | "°" => unit.into(),
         _ => format!(" {unit}"),
-    }
-}
-
-/// Changes that wait for the mouse to be released, by entity, component and path.
-pub(super) type Pending = HashMap<(Entity, TypeId, &'static str), Box<dyn PartialReflect>>;
-
-/// Draws a group for `entity`, and writes what is changed. Nothing where the entity lacks the component.
-pub(super) fn draw_group(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, entity: Entity, group: &Group) {
-    let registry = world.resource::<AppTypeRegistry>().clone();
-    let registry = registry.read();
-    if current(world, &registry, entity, (group.component)()).is_none() {
-        return;
-    }
-    let header = egui::CollapsingHeader::new(group.title).show(ui, |ui| {
-        for row in group.rows {
-            draw_row(ui, world, panel, &registry, entity, group, row);
-        }
-        if ui.small_button("Defaults").on_hover_text("Sets this group to its defaults.").clicked() {
-            set_defaults(world, &registry, entity, group);
-        }
-    });
-    panel.note(ui, group.title, &header.header_response);
-}
-
-fn draw_row(
-    ui: &mut Ui,
-    world: &mut World,
-    panel: &mut WaterPanel,
-    registry: &TypeRegistry,
-    entity: Entity,
-    group: &Group,
-    row: &Row,
-) {
-    let component = (group.component)();
-    let key = (entity, component, row.path);
-    let drawn = {
-        let Some(now) = current(world, registry, entity, component) else { return };
-        let Ok(now) = now.reflect_path(row.path) else { return };
-        row.draw(ui, panel.pending.get(&key).map_or(now, |pending| &**pending))
-    };
-    let Some((response, value)) = drawn else { return };
-    panel.note(ui, row.label, &response);
-    response.on_hover_text(row.help());
-    let Some(value) = value else { return };
-    if group.on_release {
-        panel.pending.insert(key, value);
-    } else {
-        write(world, registry, entity, component, row.path, &*value);
-    }
-}
-
-impl Row {
-    /// What it means, with range and unit.
-    fn help(&self) -> String {
-        let Self { tip, range: [low, high], unit, .. } = self;
-        if *unit == "" && *low == 0.0 && *high == 1.0 {
-            (*tip).into()
-        } else {
-            format!("{tip}\n{low}…{high}{}", suffix(unit))
-        }
-    }
-}
-
-impl WaterPanel {
-    /// Notes where a control is, if it can be seen.
-    pub(super) fn note(&mut self, ui: &Ui, label: &'static str, response: &Response) {
-        let egui::Rect { min, max } = response.rect;
-        if ui.clip_rect().contains(min) && ui.clip_rect().contains(max) {
-            self.places.insert(label, Rect::new(min.x, min.y, max.x, max.y));
-        }
-    }
-}
-
-/// Writes what has waited for the mouse to be released.
-pub(super) fn write_pending(world: &mut World, panel: &mut WaterPanel) {
-    if panel.pending.is_empty() {
-        return;
-    }
-    let registry = world.resource::<AppTypeRegistry>().clone();
-    let registry = registry.read();
-    for ((entity, component, path), value) in panel.pending.drain() {
-        write(world, &registry, entity, component, path, &*value);
-    }
-}
-
-fn set_defaults(world: &mut World, registry: &TypeRegistry, entity: Entity, group: &Group) {
-    let component = (group.component)();
-    let Some(default) = registry.get_type_data::<ReflectDefault>(component).map(ReflectDefault::default) else {
-        return;
-    };
-    for row in group.rows {
-        if let Ok(value) = default.reflect_path(row.path) {
-            write(world, registry, entity, component, row.path, value);
-        }
-    }
-}
-
-fn current<'w>(
-    world: &'w World,
-    registry: &TypeRegistry,
-    entity: Entity,
-    component: TypeId,
-) -> Option<&'w dyn Reflect> {
-    registry.get_type_data::<ReflectComponent>(component)?.reflect(world.get_entity(entity).ok()?)
-}
-
-/// Writes one field, and with it marks the component as changed.
-fn write(
-    world: &mut World,
-    registry: &TypeRegistry,
-    entity: Entity,
-    component: TypeId,
-    path: &str,
-    value: &dyn PartialReflect,
-) {
-    let Some(reflect) = registry.get_type_data::<ReflectComponent>(component) else { return };
-    let Ok(mut entity) = world.get_entity_mut(entity) else { return };
-    let Some(mut component) = reflect.reflect_mut(&mut entity) else { return };
-    if let Ok(field) = component.reflect_path_mut(path)
-        && let Err(error) = field.try_apply(value)
-    {
-        warn!("{path} cannot be set: {error}");
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{body::WaterOptics, panel::groups::GROUPS, preset, sky::Sky};
-
-    fn registry() -> AppTypeRegistry {
-        App::new().world().resource::<AppTypeRegistry>().clone()
-    }
-
-    #[test]
-    fn every_row_finds_its_field_and_its_default_is_within_range() {
-        let registry = registry();
-        let registry = registry.read();
-        for group in GROUPS {
-            let default = registry.get_type_data::<ReflectDefault>((group.component)()).unwrap().default();
-            for row in group.rows {
-                let path = format!("{} {}", group.title, row.path);
-                let value = default.reflect_path(row.path).unwrap_or_else(|error| panic!("{path}: {error}"));
-                assert!(!row.tip.is_empty() && row.tip.ends_with('.'), "{path} is not explained");
-                if let Some(number) = value.try_downcast_ref::<f32>().filter(|number| number.is_finite()) {
-                    let shown = f64::from(*number) * row.factor;
-                    assert!((row.range[0] - 1e-6..=row.range[1] + 1e-6).contains(&shown), "{path}: {shown}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn every_setting_has_a_row_or_a_section_of_its_own() {
-        // Drawn by `waves.rs` and by the choice of views; layers are the game's.
-        let elsewhere = ["trains", "view", "layers"];
-        let registry = registry();
-        let registry = registry.read();
-        for group in GROUPS {
-            let info = registry.get_type_info((group.component)()).unwrap().as_struct().unwrap();
-            for field in info.field_names().iter().filter(|field| !elsewhere.contains(field)) {
-                let has_row = group.rows.iter().any(|row| row.path == *field);
-                assert!(has_row, "{}::{field}", group.title);
-            }
-        }
-        // And every component that presets save has a group.
-        let mut world = App::new();
-        let world = world.world_mut();
-        let water = world.spawn((crate::body::Water::default(), crate::body::WaterFlow::default())).id();
-        let scene = preset::PresetScene { water, sky: None, camera: None };
-        for component in preset::Preset::of(world, scene).components() {
-            assert!(GROUPS.iter().any(|group| (group.component)() == component), "{component:?}");
-        }
-    }
-
-    #[test]
-    fn a_group_writes_one_field_and_resets_all() {
-        let mut app = App::new();
-        let changed = WaterOptics { refraction: 0.3, edge_depth: 2.0, fresnel: Fresnel::Schlick, ..default() };
-        let water = app.world_mut().spawn(changed).id();
-        let registry = registry();
-        let registry = registry.read();
-        let group = GROUPS.iter().find(|group| (group.component)() == TypeId::of::<WaterOptics>()).unwrap();
-        write(app.world_mut(), &registry, water, (group.component)(), "index", &1.5_f32);
-        let expected = WaterOptics { index: 1.5, ..changed };
-        assert_eq!(*app.world().get::<WaterOptics>(water).unwrap(), expected);
-        set_defaults(app.world_mut(), &registry, water, group);
-        assert_eq!(*app.world().get::<WaterOptics>(water).unwrap(), WaterOptics::default());
-        // Of a wrong type, of a gone entity: nothing happens.
-        write(app.world_mut(), &registry, water, (group.component)(), "index", &true);
-        app.world_mut().despawn(water);
-        write(app.world_mut(), &registry, water, (group.component)(), "index", &1.5_f32);
-    }
-
-    #[test]
-    fn the_expensive_sky_is_set_when_the_mouse_is_released() {
-        assert!(GROUPS.iter().any(|group| (group.component)() == TypeId::of::<Sky>() && group.on_release));
     }
 }

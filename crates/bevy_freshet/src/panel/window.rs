@@ -1,6 +1,6 @@
 //! The window of the panel.
 use super::{
-    DropRequested, OrbitCamera, RestartRequested, WaterPanel, actions, groups::GROUPS, presets, rows, rows::Owner,
+    DropRequested, OrbitCamera, RestartRequested, WaterPanel, actions, group, group::Owner, groups::GROUPS, presets,
     waves,
 };
 use crate::{
@@ -25,15 +25,18 @@ pub(super) fn draw(world: &mut World) {
         let panel = &mut *panel;
         panel.places.clear();
         if !context.input(|input| input.pointer.any_down()) {
-            rows::write_pending(world, panel);
+            group::write_pending(world, panel);
         }
         if !panel.visible {
             return;
         }
-        egui::Window::new("Water").default_pos([8.0, 8.0]).default_width(300.0).vscroll(true).show(&context, |ui| {
-            ui.spacing_mut().slider_width = 110.0;
-            contents(ui, world, panel, camera);
-        });
+        egui::Window::new("Water").default_pos([8.0, 8.0]).default_size([320.0, 620.0]).vscroll(true).show(
+            &context,
+            |ui| {
+                ui.spacing_mut().slider_width = 110.0;
+                contents(ui, world, panel, camera);
+            },
+        );
     });
 }
 
@@ -58,7 +61,7 @@ fn contents(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, camera: Enti
             Owner::Camera => Some(camera),
         };
         if let Some(owner) = owner {
-            rows::draw_group(ui, world, panel, owner, group);
+            group::draw_group(ui, world, panel, owner, group);
         }
     }
     if let Some(water) = water {
@@ -105,11 +108,11 @@ fn clock_and_actions(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, cam
         }
         let drop = ui.button("Drop a body").on_hover_text("Drops a body in front of the camera.");
         panel.note(ui, "Drop a body", &drop);
-        if drop.clicked() {
-            if let Some(camera) = world.get::<GlobalTransform>(camera) {
-                let place = actions::place_before(camera, level);
-                world.write_message(DropRequested { place });
-            }
+        if drop.clicked()
+            && let Some(camera) = world.get::<GlobalTransform>(camera)
+        {
+            let place = actions::place_before(camera, level);
+            world.write_message(DropRequested { place });
         }
     });
 }

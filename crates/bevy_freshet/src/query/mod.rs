@@ -1,4 +1,8 @@
 //! Heights, normals, velocities and depths of the water for physics and gameplay.
+mod raycast;
+
+pub use raycast::WaterHit;
+
 use crate::body::ResolvedWater;
 use bevy::{ecs::system::SystemParam, prelude::*};
 

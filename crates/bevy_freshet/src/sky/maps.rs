@@ -193,19 +193,19 @@ fn replaced(images: &mut Assets<Image>, handle: &Handle<Image>, image: Image) ->
 ///
 /// Metered as ISO 2720 does incident light, EV = log₂(E / 3.3 lx), but never so long that the sky, of mean luminance L,
 /// comes out more than 1.7 stops above middle grey, EV = log₂(8 L) − 1.7: that is what keeps a low sun golden. In the dark
-/// a picture is left darker than by day, as it is seen: by a quarter of a stop for each stop below 100 lx, four at most.
+/// a picture is left darker than by day, as it is seen: by a third of a stop for each stop below 100 lx, five at most.
 fn exposure_value(sky: f32, direct: f32) -> f32 {
     let ground = (sky + direct).max(1e-4);
     let incident = ops::log2(ground / 3.3);
     let reflected = ops::log2(8.0 * sky.max(1e-4) / PI) - 1.7;
     let dark = ops::log2(100.0 / ground).max(0.0);
-    incident.max(reflected) + (0.25 * dark).min(4.0)
+    incident.max(reflected) + (dark / 3.0).min(5.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sky::{SkyPlugin, SkyView, cubemap::Cubemap};
+    use crate::sky::{Moon, SkyPlugin, SkyView, cubemap::Cubemap};
     use bevy::{
         camera::Exposure,
         light::{EnvironmentMapLight, Skybox},
@@ -270,6 +270,27 @@ mod tests {
             assert_eq!((&environment.specular_map, environment.intensity), (&maps.specular, maps.brightness));
             assert_eq!(world.get::<Exposure>(view).unwrap().ev100, maps.ev100);
         }
+    }
+
+    /// At dusk the light turns from the setting sun to the moon. What jumps must be lost in the light of the sky.
+    #[test]
+    fn the_light_passes_from_sun_to_moon_unseen() {
+        let moon = Some(Moon::full(30.0, 300.0));
+        let (mut turns, mut last) = (0, Vec3::ZERO);
+        for step in 0..=600 {
+            let sky = Sky { moon, ..PLAIN(2.0 - 0.01 * step as f32) };
+            let (mut light, mut transform) = (DirectionalLight::default(), Transform::default());
+            shine(&sky, &mut light, &mut transform);
+            let towards = transform.back().as_vec3();
+            if step > 0 && last.angle_between(towards) > 0.1 {
+                turns += 1;
+                let ground = sun::ground_illuminance(sky.sun_elevation);
+                assert!(light.illuminance < 5e-3 * ground, "{} of {ground} lx", light.illuminance);
+            }
+            last = towards;
+        }
+        assert_eq!(turns, 1);
+        assert!(last.distance(Moon::full(30.0, 300.0).direction()) < 1e-5);
     }
 
     #[test]

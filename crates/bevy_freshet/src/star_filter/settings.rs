@@ -26,13 +26,14 @@ pub struct StarFilter {
     pub length: f32,
     /// Arms of a star, 2…16. Default 6. Each costs two to four passes.
     pub arms: u32,
-    /// Angle of the first arm, from the right anticlockwise, rad, −100…100. Default π/6.
+    /// Angle of the first arm, from the right anticlockwise, rad, −100…100. Default π/12: no arm lies
+    /// along the path of glitter under a light, where arms would run into one another.
     pub angle: f32,
 }
 
 impl Default for StarFilter {
     fn default() -> Self {
-        Self { intensity: 0.5, threshold: 6.0, limit: 200.0, length: 0.1, arms: 6, angle: PI / 6.0 }
+        Self { intensity: 0.5, threshold: 6.0, limit: 200.0, length: 0.1, arms: 6, angle: PI / 12.0 }
     }
 }
 

@@ -40,11 +40,11 @@ fn vertex(in: Vertex) -> Fragment {
     // The spacing of the mesh grows with the distance from its centre; this bound of it is continuous across rings.
     let distance = max(abs(in.position.x), abs(in.position.z));
     let spacing = surface.mesh_cell * max(1.0, distance / surface.mesh_reach * 2.0 - 1.0);
-    let frozen = ice::felt(rest);
-    let fade = waves::shallow_fade(ground::still_depth(rest)) * frozen.open;
+    let felt = ice::felt(rest);
+    let fade = waves::shallow_fade(ground::still_depth(rest)) * felt.open;
     let moved = waves::displacement(rest, fade, spacing);
     let xz = surface.world_from_local * (rest + moved.xz) + surface.world_origin;
-    let world = vec3(xz.x, surface.level - ice::drop(frozen.thickness) + moved.y, xz.y);
+    let world = vec3(xz.x, surface.level - ice::drop(felt.thickness) + moved.y, xz.y);
     return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest);
 }
 
