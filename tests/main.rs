@@ -11,6 +11,8 @@ mod endurance;
 mod fields;
 mod flow;
 mod glitter;
+mod ice;
+mod ice_growth;
 mod light;
 mod night;
 mod optics;
