@@ -180,7 +180,12 @@ const STEPS: [fn(&mut World, &mut Script) -> Option<()>; 10] = [
         script.drag(at(4.0), at(104.0));
         Some(())
     },
-    |world, _| (reflectivity(world) > 0.8).then(|| take_picture(world)),
+    |world, _| {
+        (reflectivity(world) > 0.8).then_some(())?;
+        assert!(world.resource::<WaterTouchBlocked>().0, "the hand that works the panel does not touch the water");
+        take_picture(world);
+        Some(())
+    },
     |_, script| {
         (script.pictures.len() == 3).then_some(())?;
         assert_picture_changed(&script.pictures[1], &script.pictures[2]);
@@ -193,6 +198,7 @@ const STEPS: [fn(&mut World, &mut Script) -> Option<()>; 10] = [
         assert!(place(world, "Optics").is_none());
         let egui = world.resource::<EguiWantsInput>();
         assert!(!egui.wants_any_input(), "{egui:?}");
+        assert!(!world.resource::<WaterTouchBlocked>().0);
         Some(())
     },
 ];

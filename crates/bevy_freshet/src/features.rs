@@ -1,6 +1,6 @@
 //! The parts of a water that can be switched off one by one, to see what each of them does and costs.
 use crate::{
-    body::{Fresnel, WaterFlow, WaterFoam, WaterInteraction, WaterOptics, WaterWaves},
+    body::{Fresnel, WaterFlow, WaterFoam, WaterIce, WaterInteraction, WaterOptics, WaterWaves},
     reflection::WaterReflection,
     surface::WaterSurface,
 };
@@ -38,6 +38,8 @@ pub enum Feature {
     Rings,
     /// All simulated fields, rings, foam and dye: [`WaterInteraction::enabled`].
     Interaction,
+    /// Ice, drawn and felt: [`WaterIce`]. On a water that never had any, half of the winter has passed.
+    Ice,
 }
 
 /// The settings of a water that features change.
@@ -50,6 +52,7 @@ struct Settings {
     foam: WaterFoam,
     interaction: WaterInteraction,
     flow: Option<WaterFlow>,
+    ice: Option<WaterIce>,
 }
 
 /// Beside a water with which features were switched: what they had before.
@@ -68,13 +71,14 @@ impl Default for Remembered {
             foam: default(),
             interaction: default(),
             flow: None,
+            ice: Some(WaterIce::frozen(0.5)),
         })
     }
 }
 
 impl Feature {
     /// Every feature.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Reflection,
         Self::Refraction,
         Self::Dispersion,
@@ -88,6 +92,7 @@ impl Feature {
         Self::Foam,
         Self::Rings,
         Self::Interaction,
+        Self::Ice,
     ];
 
     /// What it is called.
@@ -106,6 +111,7 @@ impl Feature {
             Self::Foam => "foam",
             Self::Rings => "rings",
             Self::Interaction => "interaction",
+            Self::Ice => "ice",
         }
     }
 
@@ -125,6 +131,7 @@ impl Feature {
             Self::Foam => "Foam.",
             Self::Rings => "Rings around bodies.",
             Self::Interaction => "All simulated fields: rings, foam and dye.",
+            Self::Ice => "Ice, drawn and felt.",
         }
     }
 
@@ -166,7 +173,7 @@ impl Feature {
             Self::Fresnel => {
                 set(&mut now.optics.fresnel, &mut kept.optics.fresnel, Fresnel::Constant { share: 0.5 }, on)
             }
-            Self::Flow => exchange_flow(&mut now.flow, &mut kept.flow, on),
+            Self::Flow => exchange(&mut now.flow, &mut kept.flow, on),
             Self::Light => set(&mut now.surface.sunlight, &mut kept.surface.sunlight, false, on),
             Self::Fog => set(&mut now.optics.fog, &mut kept.optics.fog, false, on),
             Self::Waves => set(&mut now.waves.trains, &mut kept.waves.trains, Vec::new(), on),
@@ -175,6 +182,7 @@ impl Feature {
             Self::Foam => set(&mut now.foam.amount, &mut kept.foam.amount, 0.0, on),
             Self::Rings => set(&mut now.interaction.rings, &mut kept.interaction.rings, 0.0, on),
             Self::Interaction => set(&mut now.interaction.enabled, &mut kept.interaction.enabled, false, on),
+            Self::Ice => exchange(&mut now.ice, &mut kept.ice, on),
         }
     }
 }
@@ -192,13 +200,17 @@ fn set<T: PartialEq + Clone>(now: &mut T, kept: &mut T, off: T, on: bool) -> boo
     true
 }
 
-/// Switches the current as a whole, so that neither surface nor bodies ask for it any more.
-fn exchange_flow(now: &mut Option<WaterFlow>, kept: &mut Option<WaterFlow>, on: bool) -> bool {
-    let changes = if on { now.is_none() && kept.is_some() } else { now.is_some() };
-    if changes {
-        core::mem::swap(now, kept);
+/// Switches a component as a whole, so that neither surface nor bodies ask for it any more; whether that changed it.
+fn exchange<T: Clone>(now: &mut Option<T>, kept: &mut Option<T>, on: bool) -> bool {
+    if on == now.is_some() || (on && kept.is_none()) {
+        return false;
     }
-    changes
+    if on {
+        now.clone_from(kept);
+    } else {
+        *kept = now.take();
+    }
+    true
 }
 
 impl Settings {
@@ -210,16 +222,23 @@ impl Settings {
             reflection: water.get::<WaterReflection>()?.clone(),
             foam: *water.get()?,
             interaction: *water.get()?,
-            flow: water.get::<WaterFlow>().cloned(),
+            flow: water.get().cloned(),
+            ice: water.get().copied(),
         })
     }
 
     fn write(self, water: &mut EntityWorldMut) {
         water.insert((self.optics, self.surface, self.waves, self.reflection, self.foam, self.interaction));
-        match self.flow {
-            Some(flow) => _ = water.insert(flow),
-            None => _ = water.remove::<WaterFlow>(),
-        }
+        write_optional(self.flow, water);
+        write_optional(self.ice, water);
+    }
+}
+
+/// Gives the water a component, or takes it.
+fn write_optional<C: Component>(component: Option<C>, water: &mut EntityWorldMut) {
+    match component {
+        Some(component) => _ = water.insert(component),
+        None => _ = water.remove::<C>(),
     }
 }
 
@@ -234,7 +253,7 @@ mod tests {
     /// A water whose features are all on.
     fn water(world: &mut World) -> EntityWorldMut<'_> {
         let optics = WaterOptics { dispersion: 0.01, refraction: 0.7, ..default() };
-        world.spawn((crate::body::Water::default(), optics, WaterFlow::uniform(Vec2::X)))
+        world.spawn((crate::body::Water::default(), optics, WaterFlow::uniform(Vec2::X), WaterIce::frozen(0.7)))
     }
 
     /// What a water is set to, as text.
@@ -299,6 +318,9 @@ mod tests {
         let mut water = world.spawn(crate::body::Water::default());
         Feature::Dispersion.switch(true, &mut water);
         assert_eq!(water.get::<WaterOptics>().unwrap().dispersion, 0.006);
+        assert!(!Feature::Ice.is_on(water.as_readonly()));
+        Feature::Ice.switch(true, &mut water);
+        assert_eq!(water.get::<WaterIce>().unwrap().freezing, 0.5);
         // There is no default current.
         Feature::Flow.switch(true, &mut water);
         assert!(!Feature::Flow.is_on(water.as_readonly()));

@@ -5,16 +5,17 @@ use super::{
     rows::{choice, row},
 };
 use crate::{
-    body::{Water, WaterFlow, WaterFoam, WaterInteraction, WaterOptics, WaterWaves},
+    body::{Water, WaterFlow, WaterFoam, WaterIce, WaterInteraction, WaterLighting, WaterOptics, WaterWaves},
     reflection::WaterReflection,
     sky::{Sky, SkyView},
+    star_filter::StarFilter,
     surface::WaterSurface,
 };
 use core::any::TypeId;
 
 /// Every group, in the order of the panel.
 pub(super) const GROUPS: &[Group] =
-    &[SKY, VIEW, ORBIT, WATER, OPTICS, SURFACE, WAVES, FLOW, REFLECTION, FOAM, INTERACTION];
+    &[SKY, VIEW, STARS, ORBIT, WATER, OPTICS, LIGHTING, SURFACE, WAVES, FLOW, REFLECTION, FOAM, INTERACTION, ICE];
 
 const SKY: Group = Group {
     title: "Sun and sky",
@@ -33,7 +34,9 @@ const SKY: Group = Group {
         row("Sun azimuth", "sun_azimuth", [0.0, 360.0], "°", "Bearing of the sun: 0 north, 90 east.").degrees(),
         row("Turbidity", "turbidity", [1.0, 10.0], "", "Haze: 2 after rain, 3 ordinary, from 6 on hazy."),
         row("Clouds", "cloud_cover", [0.0, 1.0], "", "Share of the sky under clouds."),
-        row("Cloud seed", "seed", [0.0, 100.0], "", "Which clouds."),
+        row("Cloud seed", "seed", [0.0, 100.0], "", "Which clouds and stars."),
+        choice("Moon", "moon", "Where the moon stands and which phase it shows."),
+        row("Starlight", "stars", [0.0, 100.0], "", "Factor on the light of the stars; nature 1.").logarithmic(),
         row("Ground albedo", "ground_albedo", [0.0, 1.0], "", "Share of the light that the land reflects."),
         row("Sky resolution", "resolution", [64.0, 2048.0], "px", "Texels along an edge; powers of two."),
     ],
@@ -54,6 +57,23 @@ const VIEW: Group = Group {
             "Distance at which haze leaves 5 % contrast; off: no haze.",
         )
         .logarithmic(),
+    ],
+};
+
+const STARS: Group = Group {
+    title: "Star filter",
+    owner: Owner::Camera,
+    component: TypeId::of::<StarFilter>,
+    on_release: false,
+    rows: &[
+        row("Star intensity", "intensity", [0.0, 10.0], "", "Light of the stars around bright spots; 0 is off.")
+            .logarithmic(),
+        row("Star threshold", "threshold", [0.0, 1e4], "", "Brightness from which on light makes a star.")
+            .logarithmic(),
+        row("Star limit", "limit", [0.0, 1e4], "", "Brightness beyond which a star grows no brighter.").logarithmic(),
+        row("Arm length", "length", [0.005, 0.5], "", "Of an arm, as a share of the picture's height."),
+        row("Arms", "arms", [2.0, 16.0], "", "Arms of a star."),
+        row("Arm angle", "angle", [-180.0, 180.0], "°", "Of the first arm, from the right anticlockwise.").degrees(),
     ],
 };
 
@@ -98,6 +118,30 @@ const OPTICS: Group = Group {
         row("Edge depth", "edge_depth", [0.0, 5.0], "m", "Depth over which the waterline fades in; 0 is hard.")
             .logarithmic(),
         choice("Fog", "fog", "Whether the camera's fog acts on the water."),
+    ],
+};
+
+const LIGHTING: Group = Group {
+    title: "Stylised light",
+    owner: Owner::Water,
+    component: TypeId::of::<WaterLighting>,
+    on_release: false,
+    rows: &[
+        row("Diffuse", "diffuse", [0.0, 1.0], "", "Half-Lambert diffuse shading; nature 0."),
+        row("Wave shadow", "wave_shadow", [0.0, 1.0], "", "Share of the waves' normal in the diffuse shading."),
+        row("Highlight", "highlight", [0.0, 100.0], "1/sr", "Highlight of waves and level surface; 0 is off.")
+            .logarithmic(),
+        row("Flatness", "flatness", [0.0, 1.0], "", "Share of the level surface in the highlight."),
+        row("Sharpness", "sharpness", [1.0, 1e4], "", "Exponent of the waves' highlight; higher is smaller.")
+            .logarithmic(),
+        row("Shininess", "shininess", [1.0, 1e4], "", "Exponent of the level surface's highlight.").logarithmic(),
+        row("Tinted highlight", "tinted_highlight", [0.0, 100.0], "1/sr", "Highlight of one colour; 0 is off.")
+            .logarithmic(),
+        choice("Tint", "tint", "Colour of the tinted highlight."),
+        row("Tint exponent", "tint_exponent", [1.0, 1e4], "", "Exponent of the tinted highlight.").logarithmic(),
+        row("Translucence", "translucence", [0.0, 10.0], "", "Light that shines through the waves; 0 is off.")
+            .logarithmic(),
+        choice("Shine-through", "translucent_color", "Colour of the light that shines through."),
     ],
 };
 
@@ -193,5 +237,32 @@ const INTERACTION: Group = Group {
         row("Rain", "rain", [0.0, 500.0], "mm/h", "Drops of rain make rings.").logarithmic(),
         row("Dye spreading", "spreading", [0.0, 1.0], "m²/s", "Spreading of dye by turbulence.").logarithmic(),
         row("Dye life", "dye_life", [0.1, 1e6], "s", "Time in which dye fades to 1/e.").logarithmic(),
+    ],
+};
+
+/// The switch of [`Feature::Ice`](crate::features::Feature::Ice) brings the component along.
+const ICE: Group = Group {
+    title: "Ice",
+    owner: Owner::Water,
+    component: TypeId::of::<WaterIce>,
+    on_release: false,
+    rows: &[
+        row("Freezing", "freezing", [0.0, 1.0], "", "How much of the winter has passed: 0 open, 1 frozen over."),
+        row("Thickness", "thickness", [0.1, 3.0], "m", "Of the oldest ice at the end of the winter.").logarithmic(),
+        row("Level drop", "level_drop", [0.0, 1.0], "", "How far the surface sinks, as a share of the thickness."),
+        row("Bank reach", "bank_reach", [0.1, 1000.0], "m", "Distance over which the bank's shelter is lost.")
+            .logarithmic(),
+        row("Flow limit", "flow_limit", [0.01, 100.0], "m/s", "Speed of the current above which no ice grows.")
+            .logarithmic(),
+        row("Snow", "snow", [0.0, 1.0], "", "Share of the ice that snow covers in the end."),
+        row("Cracks", "cracks", [0.0, 1.0], "", "How strongly cracks are seen in bare ice."),
+        row("Drift size", "pattern_size", [0.5, 1000.0], "m", "Size of the pattern of drifts and cracks.")
+            .logarithmic(),
+        row("Ice absorption", "absorption", [0.0, 100.0], "1/m", "Light lost per metre of ice, red, green, blue."),
+        row("Bubbles", "scattering", [0.0, 1000.0], "1/m", "Scattering in the ice: 0.2 black ice, 20 white ice.")
+            .logarithmic(),
+        row("Ice roughness", "roughness", [1e-4, 0.5], "", "Slope variance of the bare ice: blurs its mirror.")
+            .logarithmic(),
+        choice("Snow albedo", "snow_albedo", "Share of the light that snow scatters back."),
     ],
 };

@@ -1,5 +1,6 @@
-//! Camera controllers stand still while the panel is used.
+//! Camera controllers and the player's hand rest while the panel is used.
 use super::OrbitCamera;
+use crate::interaction::WaterTouchBlocked;
 use bevy::{camera_controller::free_camera::FreeCameraState, prelude::*};
 use bevy_egui::input::EguiWantsInput;
 
@@ -24,6 +25,17 @@ pub(super) fn hold_controllers(
             state.enabled = true;
             commands.entity(camera).try_remove::<Held>();
         }
+    }
+}
+
+/// Keeps the player's hand off the water while the panel wants the pointer. A game may block it for reasons of its own
+/// meanwhile: only what was blocked here is released here.
+pub(super) fn block_touch(egui: Res<EguiWantsInput>, mut blocked: ResMut<WaterTouchBlocked>, mut ours: Local<bool>) {
+    let wanted = egui.wants_pointer_input();
+    if wanted && !blocked.0 {
+        (blocked.0, *ours) = (true, true);
+    } else if !wanted && core::mem::take(&mut *ours) {
+        blocked.0 = false;
     }
 }
 

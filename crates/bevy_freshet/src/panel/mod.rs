@@ -8,7 +8,7 @@
 //!
 //! It opens over the camera that draws to a window, never over mirrors or pictures, and is hidden and shown by a key.
 //! While the pointer is over it, [`FreeCamera`](bevy::camera_controller::free_camera::FreeCamera) and [`OrbitCamera`]
-//! stand still.
+//! stand still, and [`WaterTouch`](crate::interaction::WaterTouch) is blocked.
 mod actions;
 mod attach;
 mod group;
@@ -23,6 +23,7 @@ mod window;
 pub use actions::{DropRequested, RestartRequested};
 pub use orbit::OrbitCamera;
 
+use crate::interaction::WaterTouchBlocked;
 use bevy::{
     app::{RunFixedMainLoop, RunFixedMainLoopSystems},
     camera_controller::free_camera::rotate_freecam_to,
@@ -101,13 +102,14 @@ impl Plugin for WaterPanelPlugin {
             pending: default(),
             places: default(),
         })
+        .init_resource::<WaterTouchBlocked>()
         .add_message::<RestartRequested>()
         .add_message::<DropRequested>()
         .add_systems(
             PreUpdate,
             (
                 attach::attach_to_window.before(EguiPreUpdateSet::InitContexts),
-                (toggle, hold::hold_controllers).chain().after(InputSystems),
+                (toggle, hold::hold_controllers, hold::block_touch).chain().after(InputSystems),
             ),
         )
         .add_systems(

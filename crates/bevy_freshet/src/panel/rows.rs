@@ -1,5 +1,5 @@
 //! Controls for reflected values: a row of the panel edits one field of one component.
-use crate::body::Fresnel;
+use crate::{body::Fresnel, sky::Moon};
 use bevy::{
     prelude::*,
     reflect::{
@@ -97,6 +97,10 @@ impl Row {
         if let Some(mut fresnel) = value.try_downcast_ref::<Fresnel>().copied() {
             let response = fresnel_choice(ui, self.label, &mut fresnel);
             return Some(changed(response, fresnel));
+        }
+        if let Some(mut moon) = value.try_downcast_ref::<Option<Moon>>().copied() {
+            let response = moon_choice(ui, self.label, &mut moon);
+            return Some(changed(response, moon));
         }
         if let Some(&number) = value.try_downcast_ref::<Option<f32>>() {
             return Some(self.optional(ui, number));
@@ -201,6 +205,29 @@ fn fresnel_choice(ui: &mut Ui, label: &str, fresnel: &mut Fresnel) -> Response {
     }
     if *fresnel != before {
         response.mark_changed();
+    }
+    response
+}
+
+/// A box to tick, and the moon's angles in degrees if there is one.
+fn moon_choice(ui: &mut Ui, label: &str, moon: &mut Option<Moon>) -> Response {
+    let mut is_up = moon.is_some();
+    let mut response = ui.checkbox(&mut is_up, label);
+    *moon = is_up.then(|| moon.unwrap_or_default());
+    if let Some(moon) = moon {
+        for (name, angle, range) in [
+            ("Moon elevation", &mut moon.elevation, -90.0..=90.0),
+            ("Moon azimuth", &mut moon.azimuth, 0.0..=360.0),
+            ("Moon phase", &mut moon.phase, 0.0..=180.0),
+        ] {
+            let mut degrees = angle.to_degrees();
+            let slider = Slider::new(&mut degrees, range).clamping(egui::SliderClamping::Edits).suffix("°").text(name);
+            let part = ui.add(slider);
+            if part.changed() {
+                *angle = degrees.to_radians();
+            }
+            response |= part;
+        }
     }
     response
 }

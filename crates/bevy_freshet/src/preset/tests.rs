@@ -212,5 +212,5 @@ fn every_shipped_preset_is_known_completely_and_needs_no_correction() {
         assert_ne!(text_of(&app, scene), before, "{}", path.display());
         count += 1;
     }
-    assert!(count >= 4);
+    assert!(count >= 6);
 }
