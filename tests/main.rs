@@ -8,8 +8,10 @@ mod stage;
 mod buoyancy;
 #[cfg(feature = "rapier")]
 mod endurance;
+mod features;
 mod fields;
 mod flow;
+mod foam;
 mod glitter;
 mod ice;
 mod ice_growth;

@@ -115,3 +115,80 @@ fn edges_of_the_mesh_are_drawn_where_its_vertices_are() {
         assert!(!green(corner + vec2(0.75, 0.25) * cell), "a line inside a triangle at {corner}");
     }
 }
+
+/// A place 3 m to the right of the middle, where the next tests disturb the water.
+const PLACE: Vec2 = vec2(3.0, -1.0);
+
+/// The same water, a metre deep everywhere, a frame after `disturb` did something to it at [`PLACE`].
+fn disturbed(view: SurfaceView, disturb: impl FnOnce(&mut Stage, Vec3)) -> Picture {
+    let mut stage = Stage::new();
+    stage.spawn(WaterBed::from_fn(uvec2(80, 80), 0.5, |_| -1.0).unwrap());
+    let (water, waves, surface, optics) = still_water(Vec2::splat(39.0));
+    let foam = WaterFoam { shore: 0.0, ..default() };
+    stage.spawn((water, waves, WaterSurface { view, ..surface }, optics, foam));
+    let projection = OrthographicProjection {
+        scaling_mode: bevy::camera::ScalingMode::FixedHorizontal { viewport_width: WIDTH },
+        far: 100.0,
+        ..OrthographicProjection::default_3d()
+    };
+    let pose = Transform::from_xyz(0.0, 20.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
+    let camera = stage.camera(Projection::Orthographic(projection), pose);
+    stage.settle();
+    disturb(&mut stage, PLACE.extend(0.0).xzy());
+    stage.run(1.0 / 60.0);
+    stage.picture(camera)
+}
+
+/// Asserts the colours at the middle, at one deviation (1 m) from it, and far from it, where `color` is that of the share of
+/// a Gaussian.
+fn assert_gaussian(picture: &Picture, color: impl Fn(f32) -> Vec3) {
+    for away in [Vec2::ZERO, Vec2::X, Vec2::NEG_Y, vec2(-7.0, 0.0)] {
+        let drawn = color_at(picture, PLACE + away + 0.01);
+        let expected = color((-0.5 * away.length_squared()).exp());
+        assert!((drawn - expected).abs().max_element() < 0.02, "{away} m away: {drawn}, expected {expected}");
+    }
+}
+
+#[test]
+fn foam_is_as_white_as_it_is_dense() {
+    let picture = disturbed(SurfaceView::Foam, |stage, place| {
+        // A Gaussian of density d in its middle has the volume 2 π σ² d.
+        stage.app.world_mut().write_message(Disturb::at(place, 1.0).with_foam(0.6 * core::f32::consts::TAU));
+    });
+    assert_gaussian(&picture, |share| Vec3::splat(0.6 * share));
+}
+
+#[test]
+fn dye_has_the_colour_that_a_metre_of_it_lets_through() {
+    let absorption = vec3(0.2, 0.6, 1.2);
+    let picture = disturbed(SurfaceView::Dye, |stage, place| {
+        // In a metre of water as above.
+        let volume = core::f32::consts::TAU;
+        stage.app.world_mut().write_message(Disturb::dye(place, 1.0, absorption, volume));
+    });
+    assert_gaussian(&picture, |share| Vec3::exp(-absorption * share));
+}
+
+#[test]
+fn rings_are_green_where_they_rise_and_blue_where_they_fall() {
+    for (depth, color) in [(-0.04, Vec3::Y), (0.04, Vec3::Z)] {
+        let picture = disturbed(SurfaceView::Interaction, |stage, place| {
+            stage.app.world_mut().write_message(Disturb::push(place, 1.0, depth));
+        });
+        // 5 cm are full.
+        assert_gaussian(&picture, |share| color * (0.8 * share));
+    }
+}
+
+#[test]
+fn bodies_are_red_where_they_cut_the_water() {
+    let picture = disturbed(SurfaceView::Interaction, |stage, place| {
+        // Without a material it is not drawn, and one sees the water that it covers.
+        let mesh = stage.app.world_mut().resource_mut::<Assets<Mesh>>().add(Cuboid::new(2.0, 1.0, 1.0));
+        stage.spawn((Mesh3d(mesh), DisturbsWater, Transform::from_translation(place)));
+    });
+    for (away, cover) in [(Vec2::ZERO, 1.0), (vec2(0.6, 0.0), 1.0), (vec2(1.4, 0.0), 0.0), (vec2(0.0, 0.9), 0.0)] {
+        let drawn = color_at(&picture, PLACE + away).x;
+        assert!((drawn - cover).abs() < 0.02, "{away} m away: {drawn}, expected {cover}");
+    }
+}

@@ -24,6 +24,8 @@ pub mod query;
 pub mod reflection;
 mod report;
 mod schedule;
+#[cfg(test)]
+mod shaders;
 pub mod simulation;
 pub mod sky;
 pub mod star_filter;
