@@ -48,7 +48,7 @@ struct Causes {
     freezing: Freezing,
 }
 
-/// Most cells of a map: computing that many takes about as long as a frame.
+/// Most cells of a map: computing that many takes a few hundredths of a second.
 const MOST_CELLS: f32 = 384.0 * 384.0;
 /// Change of the level that is worth a new map, m.
 const LEVEL_STEP: f32 = 0.1;

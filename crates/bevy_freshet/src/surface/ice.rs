@@ -23,6 +23,7 @@ pub(super) fn write_ice(
     reported: &mut Reported,
 ) -> Option<IceTextures> {
     let settings = settings?;
+    ground.ice_tile.want();
     let usable = WaterIce::default();
     let mut clamp = |field, value, range, fallback| reported.clamp(entity, field, value, range, fallback);
     gpu.ice_snow = clamp("WaterIce::snow", settings.snow, 0.0..=1.0, usable.snow);
@@ -42,5 +43,5 @@ pub(super) fn write_ice(
     gpu.ice_level_drop = ice.level_drop;
     gpu.ice_order_size = ice.order.size().as_vec2();
     gpu.ice_order_cell = ice.order.cell_size();
-    Some(IceTextures { order: ground.ice_order(&ice.order, images), tile: ground.ice_tile(images) })
+    Some(IceTextures { order: ground.ice_order(&ice.order, images), tile: ground.ice_tile.get(images) })
 }

@@ -4,6 +4,7 @@ use bevy::{
     image::Image,
     prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
+    tasks::{AsyncComputeTaskPool, Task, block_on},
 };
 use core::f32::consts::TAU;
 use freshet_hydro::noise::fractal_noise;
@@ -15,9 +16,39 @@ const STEEPEST: f32 = 40.0;
 /// Cracks that begin somewhere in the tile; branches come on top.
 const CRACKS: usize = 11;
 
+/// The tile, which takes too long to be made within a frame.
+#[derive(Default)]
+pub(super) enum IceTile {
+    /// No water can freeze yet.
+    #[default]
+    Unwanted,
+    Making(Task<Image>),
+    Made(Handle<Image>),
+}
+
+impl IceTile {
+    /// Begins to make the tile in the background: a water may freeze.
+    pub fn want(&mut self) {
+        if matches!(self, Self::Unwanted) {
+            *self = Self::Making(AsyncComputeTaskPool::get().spawn(async { ice_tile() }));
+        }
+    }
+
+    /// The tile; waits for it if it is not there yet.
+    pub fn get(&mut self, images: &mut Assets<Image>) -> Handle<Image> {
+        let image = match core::mem::take(self) {
+            Self::Made(handle) => handle,
+            Self::Making(task) => images.add(block_on(task)),
+            Self::Unwanted => images.add(ice_tile()),
+        };
+        *self = Self::Made(image.clone());
+        image
+    }
+}
+
 /// Everything that ice needs of a pattern in four bytes: red and green the slope of the relief, blue cracks, alpha the
 /// relief's height, all heights equally common. It repeats, and has all its mip levels.
-pub(super) fn ice_tile() -> Image {
+fn ice_tile() -> Image {
     let mut level = texels();
     let mut data = Vec::new();
     let mut size = SIZE;
@@ -158,5 +189,14 @@ mod tests {
         let mean = texels.iter().sum::<Vec4>() / texels.len() as f32;
         assert!((mean.xy() - 0.5).abs().max_element() < 1e-3 && (mean.w - 0.5).abs() < 1e-3, "{mean}");
         assert!((0.005..0.1).contains(&mean.z), "cracks cover {}", mean.z);
+    }
+
+    /// How long the tile is made in the background.
+    #[test]
+    #[ignore = "a measurement: run it with --ignored --nocapture"]
+    fn the_tile_takes() {
+        let start = std::time::Instant::now();
+        let size = ice_tile().data.map_or(0, |data| data.len());
+        println!("{:.0} ms for {size} bytes", start.elapsed().as_secs_f64() * 1e3);
     }
 }

@@ -4,7 +4,7 @@ use super::{
     detail::detail_tile,
     foam::foam_tile,
     gpu::GpuSurface,
-    ice_tile::ice_tile,
+    ice_tile::IceTile,
     material::SurfaceMaterial,
     mesh::{nested_grid, rings_for},
     viewer::Viewers,
@@ -101,7 +101,7 @@ pub(crate) struct GroundTextures {
     /// Largest speed of each flow map, m/s.
     fastest: Vec<(Arc<Grid<Vec2>>, f32)>,
     ice_orders: Vec<(Arc<Grid<f32>>, Handle<Image>)>,
-    ice_tile: Option<Handle<Image>>,
+    pub(super) ice_tile: IceTile,
 }
 
 impl GroundTextures {
@@ -131,11 +131,6 @@ impl GroundTextures {
             grid_image("water_ice_order", grid.size(), TextureFormat::R32Float, data)
         };
         shared(&mut self.ice_orders, grid, || images.add(image()))
-    }
-
-    /// The pattern of all ice, made when the first water freezes.
-    pub fn ice_tile(&mut self, images: &mut Assets<Image>) -> Handle<Image> {
-        self.ice_tile.get_or_insert_with(|| images.add(ice_tile())).clone()
     }
 
     /// Drops the textures of grids that nothing else uses.

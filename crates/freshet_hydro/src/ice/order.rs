@@ -16,6 +16,13 @@ pub struct Site {
     pub speed: f32,
 }
 
+impl Site {
+    /// Depths that are not a number count as land.
+    fn is_wet(&self) -> bool {
+        self.depth > 0.0
+    }
+}
+
 /// What hinders freezing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Freezing {
@@ -51,14 +58,14 @@ pub fn order_map(
     let cells = Grid::from_fn(size, cell_size, |cell| cell)?;
     let place = |cell: UVec2| cells.position(cell);
     let sites: Vec<Site> = cells.values().par_iter().map(|&cell| site(place(cell))).collect();
-    let dry: Vec<bool> = sites.iter().map(|site| site.depth.is_nan() || site.depth <= 0.0).collect();
+    let dry: Vec<bool> = sites.iter().map(|site| !site.is_wet()).collect();
     let distances = distance_to(size, &dry);
     let mut resistance: Vec<f32> = (cells.values().par_iter(), &sites, &distances)
         .into_par_iter()
         .map(|(&cell, site, distance)| {
             // The bank lies half-way between the last wet and the first dry cell.
             let distance = (distance - 0.5) * cell_size;
-            if site.depth > 0.0 { freezing.resistance(site, distance, place(cell)) } else { f32::NAN }
+            if site.is_wet() { freezing.resistance(site, distance, place(cell)) } else { f32::NAN }
         })
         .collect();
     // Distances along a rasterised bank have steps of a cell.
