@@ -51,7 +51,7 @@ pub fn order_map(
     let cells = Grid::from_fn(size, cell_size, |cell| cell)?;
     let place = |cell: UVec2| cells.position(cell);
     let sites: Vec<Site> = cells.values().par_iter().map(|&cell| site(place(cell))).collect();
-    let dry: Vec<bool> = sites.iter().map(|site| !(site.depth > 0.0)).collect();
+    let dry: Vec<bool> = sites.iter().map(|site| site.depth.is_nan() || site.depth <= 0.0).collect();
     let distances = distance_to(size, &dry);
     let mut resistance: Vec<f32> = (cells.values().par_iter(), &sites, &distances)
         .into_par_iter()
