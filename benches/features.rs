@@ -3,6 +3,7 @@
 //! Times depend on the machine, ratios much less: every row stands beside "all on", which is measured again just before
 //! it, so that a machine that slows down does not look like a costly feature.
 #[path = "../examples/common/mod.rs"]
+#[expect(dead_code, reason = "a bench takes no picture")]
 mod common;
 #[path = "../examples/common/river.rs"]
 mod river;

@@ -1,7 +1,6 @@
 //! A bend of a river that freezes from its banks and thaws again, while a current runs in its middle.
 //!
-//! `--camera` chooses from `bank`, `above`, `close`. Without a window the winter ends with the last frame: `--frames 60`
-//! shows half of it, `--frames 120` all.
+//! `--camera` chooses from `bank`, `above`, `close`; `--freezing 0.5` holds the winter at its half.
 mod common;
 
 use bevy::{camera::Hdr, core_pipeline::tonemapping::Tonemapping, light::CascadeShadowConfigBuilder, prelude::*};
@@ -18,20 +17,33 @@ use std::f32::consts::TAU;
 const WIDTH: f32 = 30.0;
 /// Depth of its middle, m.
 const DEPTH: f32 = 2.2;
-/// Frames in which the river freezes over.
-const WINTER: f32 = 120.0;
+/// Time in which the river freezes over, s.
+const WINTER: f32 = 20.0;
 
 /// Eye and target, m.
 const CAMERAS: [(&str, Vec3, Vec3); 3] = [
-    ("bank", vec3(-19.0, 2.4, 27.0), vec3(6.0, 0.0, -2.0)),
-    ("above", vec3(-30.0, 38.0, 45.0), vec3(0.0, 0.0, 0.0)),
-    ("close", vec3(-13.0, 1.5, 16.0), vec3(-8.5, 0.0, 10.0)),
+    ("bank", vec3(-3.0, 3.4, 36.0), vec3(8.0, 0.0, 0.0)),
+    ("above", vec3(-24.0, 32.0, 46.0), vec3(4.0, 0.0, 4.0)),
+    ("close", vec3(1.0, 1.6, 24.0), vec3(5.0, 0.0, 15.0)),
 ];
 
+#[derive(Parser)]
+struct Command {
+    #[command(flatten)]
+    options: Options,
+    /// Holds the winter here, 0…1, instead of letting it come and go.
+    #[arg(long)]
+    freezing: Option<f32>,
+}
+
 fn main() -> AppExit {
-    let options = Options::parse();
-    let mut app = common::app("bevy_freshet: ice", &options);
-    app.add_plugins((WaterPlugin, SkyPlugin)).add_systems(Startup, setup).add_systems(Update, freeze);
+    let command = Command::parse();
+    let mut app = common::app("bevy_freshet: ice", &command.options);
+    app.add_plugins((WaterPlugin, SkyPlugin)).add_systems(Startup, setup);
+    match command.freezing {
+        Some(share) => app.add_systems(PostStartup, move |mut ice: Single<&mut WaterIce>| ice.freezing = share),
+        None => app.add_systems(Update, freeze),
+    };
     common::run(app)
 }
 
@@ -68,7 +80,13 @@ fn setup(
     let flow =
         WaterFlow::from_map(Grid::from_fn(uvec2(120, 120), 2.0, |c| velocity(cells.position(c))).expect("as above"));
 
-    if let Some(mesh) = bed.mesh(0..320, 0..320) {
+    if let Some(mut mesh) = bed.mesh(0..320, 0..320) {
+        // Snow on gravel.
+        let color = |height: f32| Vec4::from_array([0.05, 0.045, 0.04, 1.0]).lerp(Vec4::ONE, height);
+        let positions = mesh.attribute(Mesh::ATTRIBUTE_POSITION).and_then(|positions| positions.as_float3());
+        let colors = positions
+            .map(|p| p.iter().map(|p| color((p[1] * 10.0 + 1.5).clamp(0.0, 1.0)).to_array()).collect::<Vec<_>>());
+        mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors.unwrap_or_default());
         let snowy =
             StandardMaterial { base_color: Color::srgb(0.86, 0.88, 0.91), perceptual_roughness: 0.95, ..default() };
         commands.spawn((Mesh3d(meshes.add(mesh)), MeshMaterial3d(materials.add(snowy))));
@@ -80,6 +98,7 @@ fn setup(
         WaterWaves::wind(2.2, 300.0, vec2(0.4, 1.0)).scaled(0.5),
         WaterSurface { ripples: 0.03, ..default() },
         WaterIce::frozen(0.0),
+        WaterFoam { amount: 0.4, ..default() },
         flow,
     ));
     plant(&mut commands, &mut meshes, &mut materials, options.seed);
@@ -127,10 +146,7 @@ fn plant(commands: &mut Commands, meshes: &mut Assets<Mesh>, materials: &mut Ass
     }
 }
 
-/// Lets the winter come and go: in a window it takes two seconds each way.
-fn freeze(time: Res<Time>, mut waters: Query<&mut WaterIce>) {
-    let turn = (time.elapsed_secs() * 60.0 / WINTER) % 2.0;
-    for mut ice in &mut waters {
-        ice.freezing = 1.0 - (1.0 - turn).abs();
-    }
+/// Lets the winter come and go.
+fn freeze(time: Res<Time>, mut ice: Single<&mut WaterIce>) {
+    ice.freezing = 1.0 - (1.0 - time.elapsed_secs() / WINTER % 2.0).abs();
 }

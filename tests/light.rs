@@ -1,5 +1,8 @@
 //! Lamps and stylised light, read from pixels.
-use crate::stage::{Picture, SIZE, Stage, still_water};
+use crate::{
+    said::complaints,
+    stage::{Picture, SIZE, Stage, still_water},
+};
 use bevy::{camera::Exposure, prelude::*};
 use bevy_freshet::prelude::*;
 use core::f32::consts::PI;
@@ -167,4 +170,21 @@ fn stylised_light_is_what_its_formulas_say() {
     let translucent = WaterLighting { translucence: 1.0, ..WaterLighting::PHYSICAL };
     check("from above", styled(translucent, down), plain);
     check("from below", styled(translucent, -down), plain + irradiance * 0.36 * cosine / PI);
+}
+
+#[test]
+fn senseless_lighting_is_reported_once_and_drawn_all_the_same() {
+    let mut stage = Stage::new();
+    stage.app.insert_resource(ClearColor(Color::WHITE));
+    let lighting = WaterLighting { highlight: -1.0, tint_exponent: f32::NAN, ..WaterLighting::LAKE_2006 };
+    stage.spawn((Water::new(Vec2::splat(100.0)), lighting));
+    let sun = Transform::default().looking_to(Vec3::NEG_Y, Vec3::X);
+    stage.spawn((DirectionalLight { illuminance: 1000.0, ..default() }, sun));
+    let pose = Transform::from_xyz(0.0, 30.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
+    let camera = stage.camera(PerspectiveProjection::default(), pose);
+    let said = complaints(&mut stage.app, |app| (0..3).for_each(|_| app.update()));
+    for field in ["WaterLighting::highlight is -1", "WaterLighting::tint_exponent is NaN"] {
+        assert_eq!(said.iter().filter(|line| line.contains(field)).count(), 1, "{field}: {said:#?}");
+    }
+    assert!(stage.picture(camera).pixels().all(|(_, color)| color.is_finite()));
 }

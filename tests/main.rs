@@ -13,6 +13,8 @@ mod fields;
 mod flow;
 mod foam;
 mod glitter;
+mod ice;
+mod ice_growth;
 mod light;
 mod night;
 mod optics;

@@ -67,7 +67,7 @@ fn the_picture_has_no_pixel_that_is_not_a_number() {
 fn no_two_systems_race() {
     use bevy::ecs::schedule::{LogLevel, ScheduleBuildSettings};
     let mut stage = Stage::with(|app| {
-        app.add_plugins((WaterPlugin, bevy_freshet::sky::SkyPlugin));
+        app.add_plugins((WaterPlugin, bevy_freshet::sky::SkyPlugin, bevy_freshet::star_filter::StarFilterPlugin));
         let strict = ScheduleBuildSettings { ambiguity_detection: LogLevel::Error, ..default() };
         let world = app.world_mut();
         world.resource_mut::<Schedules>().configure_schedules(strict.clone());

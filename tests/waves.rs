@@ -3,16 +3,16 @@ use crate::stage::{SIZE, Stage, still_water};
 use bevy::{ecs::system::RunSystemOnce, prelude::*};
 use bevy_freshet::prelude::*;
 
-const LEVEL: f32 = 1.5;
+pub const LEVEL: f32 = 1.5;
 /// Width of the picture, m.
 const WIDTH: f32 = 6.0;
 
-fn sea() -> WaterWaves {
+pub fn sea() -> WaterWaves {
     WaterWaves { fade_depth: 0.0, ..WaterWaves::wind(4.0, 3000.0, vec2(1.0, 0.4)) }
 }
 
 /// Waves on a fine mesh, whose heights a camera draws from straight above.
-fn scene(stage: &mut Stage, waves: WaterWaves, pose: Transform) -> Entity {
+pub fn scene(stage: &mut Stage, waves: WaterWaves, pose: Transform) -> Entity {
     let (water, _, surface, optics) = still_water(Vec2::splat(WIDTH + 6.0));
     let surface = WaterSurface { view: SurfaceView::Height, cell: 0.03, cells: 256, ..surface };
     stage.spawn((water, waves, surface, optics, pose));
@@ -26,7 +26,7 @@ fn scene(stage: &mut Stage, waves: WaterWaves, pose: Transform) -> Entity {
 }
 
 /// Drawn and queried heights over the still surface at 1000 places of the picture.
-fn heights(stage: &mut Stage, camera: Entity, center: Vec2) -> Vec<(Vec2, f32, f32)> {
+pub fn heights(stage: &mut Stage, camera: Entity, center: Vec2) -> Vec<(Vec2, f32, f32)> {
     let picture = stage.picture(camera);
     let pixels: Vec<UVec2> = (0..1000).map(|i| uvec2(i * 37 % SIZE.x, (i * 61 + i / 7) % SIZE.y)).collect();
     let place = move |pixel: UVec2| center + (pixel.as_vec2() + 0.5 - SIZE.as_vec2() / 2.0) * (WIDTH / SIZE.x as f32);

@@ -21,7 +21,7 @@ pub enum Bench {
 
 /// Sets the machine up and runs a bench; its exit code becomes this command's.
 pub fn run(bench: Bench) -> Result<ExitCode> {
-    setup::run()?;
+    setup::run(setup::Purpose::Run)?;
     let Bench::Features { args } = bench;
     let bench = ["run", "--package", "bevy_freshet", "--example", "bench_features", "--"];
     let status = command::status(command::cargo().args(bench).args(args))?;

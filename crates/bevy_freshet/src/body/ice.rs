@@ -30,7 +30,7 @@ pub struct WaterIce {
     pub cracks: f32,
     /// Size of the pattern of snow drifts and cracks, m, 0.5…1000. Default 9.
     pub pattern_size: f32,
-    /// Absorption of the ice, 1/m, 0…100. Default that of pure ice, which is blue by the metre.
+    /// Absorption of the ice, 1/m, 0…100. Default [`WaterIce::BLUE`] times that of pure ice.
     pub absorption: Vec3,
     /// Backscattering of the bubbles in the ice, 1/m, 0…1000. Default 2.5; 0.2 is clear black ice, 20 is white ice.
     pub scattering: f32,
@@ -45,6 +45,9 @@ impl WaterIce {
     pub fn frozen(freezing: f32) -> Self {
         Self { freezing, ..default() }
     }
+
+    /// Pure ice is blue by the metre. With so many times its absorption a hand's breadth of it has that colour.
+    pub const BLUE: f32 = 8.0;
 
     /// Range of [`WaterIce::thickness`], m.
     pub(crate) const THICKNESSES: core::ops::RangeInclusive<f32> = THINNEST_WINTER..=3.0;
@@ -61,7 +64,7 @@ impl Default for WaterIce {
             snow: 0.65,
             cracks: 0.6,
             pattern_size: 9.0,
-            absorption: PURE_ICE_ABSORPTION,
+            absorption: PURE_ICE_ABSORPTION * Self::BLUE,
             scattering: 2.5,
             roughness: 0.006,
             snow_albedo: LinearRgba::rgb(0.86, 0.88, 0.91),

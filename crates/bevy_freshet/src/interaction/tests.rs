@@ -64,7 +64,10 @@ impl Pond {
     }
 
     fn strokes(&mut self) -> Vec<Stroke> {
-        self.deposits().strokes
+        let strokes = self.deposits().strokes;
+        // There is no step here that takes them.
+        self.app.world_mut().entity_mut(self.water).insert(Deposits::default());
+        strokes
     }
 
     fn set(&mut self, interaction: WaterInteraction) {

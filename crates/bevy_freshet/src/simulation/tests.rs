@@ -29,10 +29,19 @@ struct Basin {
 #[derive(Resource, Default)]
 struct Read(Option<Vec<u8>>);
 
+/// What acts on the water, instead of what is in the scene.
+#[derive(Resource, Default)]
+struct Given(Deposits);
+
+fn give(given: Res<Given>, mut waters: Query<&mut Deposits>) {
+    waters.iter_mut().for_each(|mut deposits| *deposits = given.0.clone());
+}
+
 impl Basin {
     fn new(size: Vec2, bed: Option<WaterBed>, settings: impl Bundle) -> Self {
         let mut stage = Stage::new();
-        stage.app.init_resource::<Read>();
+        stage.app.init_resource::<Read>().init_resource::<Given>();
+        stage.app.add_systems(PostUpdate, give.after(FieldSystems::Deposit).before(FieldSystems::Step));
         if let Some(bed) = bed {
             stage.spawn(bed);
         }
@@ -49,9 +58,9 @@ impl Basin {
 
     /// A frame of 1/60 s with `deposits`.
     fn frame(&mut self, deposits: Deposits) {
-        self.stage.app.world_mut().entity_mut(self.water).insert(deposits);
+        self.stage.app.insert_resource(Given(deposits));
         self.stage.run(1.0 / 60.0);
-        self.stage.app.world_mut().entity_mut(self.water).insert(Deposits::default());
+        self.stage.app.insert_resource(Given::default());
     }
 
     fn cells(&self) -> Cells {

@@ -40,7 +40,7 @@ pub struct StarFilterPlugin;
 
 impl Plugin for StarFilterPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Reported>().add_systems(PostUpdate, settings::report_unusable);
+        app.init_resource::<Reported>().add_systems(Last, settings::report_unusable);
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }

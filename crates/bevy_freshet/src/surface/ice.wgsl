@@ -14,9 +14,9 @@
 // Refractive index of ice (Warren and Brandt 2008, 550 nm).
 const INDEX: f32 = 1.311;
 // Slope that a full byte of the tile stands for, heights per tile.
-const STEEPEST: f32 = 24.0;
+const STEEPEST: f32 = 40.0;
 // Height of the snow's relief, patterns: a drift of a hand's breadth on a pattern of 9 m.
-const RELIEF: f32 = 0.011;
+const RELIEF: f32 = 0.017;
 // The coarse copy of the pattern is turned by some angle and larger by no simple number, so that the two never line up.
 const COARSE: mat2x2<f32> = mat2x2<f32>(vec2(0.2165, 0.1563), vec2(-0.1563, 0.2165));
 // How far the pattern pushes the front of the ice to and fro, in order of freezing.
@@ -98,7 +98,8 @@ fn sheet(place: vec2<f32>, felt: Felt, footprint: Footprint) -> Sheet {
     sheet.cover = growth::cover(sheet.thickness);
     let settled = growth::settled(sheet.thickness) * surface.ice_snow;
     // Drifts: what stands above a level that sinks as snow settles, once sharp and once soft for the thin veil between.
-    let heap = 0.55 * coarse.height + 0.45 * fine.height;
+    // The sum of two even distributions is humped; this makes it even again, so that `settled` is the covered share.
+    let heap = smoothstep(0.0, 1.0, 0.55 * coarse.height + 0.45 * fine.height);
     let bare = 1.0 - settled * 1.06;
     sheet.snow = smoothstep(bare - 0.03, bare + 0.03, heap) * smoothstep(0.0, 0.02, settled);
     sheet.frost = smoothstep(bare - 0.6, bare + 0.1, heap) * settled;
@@ -133,7 +134,7 @@ fn is_clear(sheet: Sheet) -> bool {
 
 fn scattering(sheet: Sheet) -> f32 {
     // Ice that is only just forming is a slush of crystals.
-    return surface.ice_scattering + 18.0 * exp(-sheet.thickness / 0.008);
+    return surface.ice_scattering + 60.0 * exp(-sheet.thickness / 0.012);
 }
 
 // Share of a beam that passes the ice at the cosine `cos_inside`.
