@@ -93,7 +93,7 @@ fn a_pillar_in_the_current_foams_around_and_behind_it() {
     let (wake, before, aside) = (density(vec2(2.5, 0.0)), density(vec2(-2.0, 0.0)), density(vec2(0.0, -4.0)));
     println!("foam: {beside:?} beside the pillar, {wake} behind it, {before} before it, {aside} aside");
     assert!(beside.iter().all(|density| *density > 0.1), "{beside:?} beside the pillar");
-    assert!(wake > 0.1 && before < 0.01 && aside < 0.01, "{wake} behind it, {before} before it, {aside} aside");
+    assert!(wake > 0.05 && before < 0.01 && aside < 0.01, "{wake} behind it, {before} before it, {aside} aside");
 }
 
 #[test]

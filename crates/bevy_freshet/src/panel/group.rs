@@ -142,7 +142,7 @@ fn write(
 mod tests {
     use super::*;
     use crate::{
-        body::{Fresnel, WaterOptics},
+        body::{Fresnel, Water, WaterFlow, WaterIce, WaterOptics},
         panel::groups::GROUPS,
         preset,
         sky::Sky,
@@ -186,7 +186,7 @@ mod tests {
         // And every component that presets save has a group.
         let mut world = App::new();
         let world = world.world_mut();
-        let water = world.spawn((crate::body::Water::default(), crate::body::WaterFlow::default())).id();
+        let water = world.spawn((Water::default(), WaterFlow::default(), WaterIce::default())).id();
         let scene = preset::PresetScene { water, sky: None, camera: None };
         for component in preset::Preset::of(world, scene).components() {
             assert!(GROUPS.iter().any(|group| (group.component)() == component), "{component:?}");
