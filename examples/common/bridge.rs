@@ -1,5 +1,6 @@
 //! A wooden footbridge on piles, round which the water parts.
 use bevy::prelude::*;
+use bevy_freshet::prelude::*;
 use bevy_rapier3d::prelude::*;
 
 /// Height of the deck over the water, m.
@@ -50,7 +51,8 @@ pub fn spawn_bridge(
             let bottom = (site.height)(foot.x, foot.y).min(site.water_level) - BURIED;
             let top = deck_height + if i == 0 || i as f32 == spans { 1.05 } else { -0.12 };
             commands.spawn((
-                Name::new("pile"),
+                // A body that stands still disturbs the water all the same: the current foams around it.
+                (Name::new("pile"), DisturbsWater),
                 Mesh3d(meshes.add(Cylinder::new(PILE_RADIUS, top - bottom))),
                 MeshMaterial3d(wood.clone()),
                 (RigidBody::Fixed, Collider::cylinder((top - bottom) / 2.0, PILE_RADIUS)),
