@@ -274,7 +274,11 @@ proptest! {
             prop_assert!(cover(&section).iter().all(|(_, share)| (0.0..1.0001).contains(share)));
             let h = 0.01;
             let slope = (at(height - h).volume() - at(height + h).volume()) / (2.0 * h);
-            prop_assert!((slope - area).abs() < 0.03 * area.max(0.5), "dV/dh {slope}, section {area}");
+            // The mean of the sections in between: where the body only just dips in they differ.
+            let areas = [height - h, height, height + h].map(|height| self::area(&at(height)));
+            let (least, most) = (areas.iter().copied().fold(f32::MAX, f32::min), areas.iter().copied().fold(0.0, f32::max));
+            let grace = 0.03 * area.max(0.5);
+            prop_assert!((least - grace..most + grace).contains(&slope), "dV/dh {slope}, sections {areas:?}");
         }
     }
 }
