@@ -14,7 +14,7 @@
 // Refractive index of ice (Warren and Brandt 2008, 550 nm).
 const INDEX: f32 = 1.311;
 // Slope that a full byte of the tile stands for, heights per tile.
-const STEEPEST: f32 = 40.0;
+const STEEPEST: f32 = 48.0;
 // Height of the snow's relief, patterns: a drift of a hand's breadth on a pattern of 9 m.
 const RELIEF: f32 = 0.017;
 // The coarse copy of the pattern is turned by some angle and larger by no simple number, so that the two never line up.

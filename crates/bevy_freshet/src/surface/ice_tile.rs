@@ -12,7 +12,7 @@ use freshet_hydro::noise::fractal_noise;
 /// Texels along one side of the tile.
 const SIZE: usize = 512;
 /// Largest slope that a texel holds, heights (0…1) per tile: what 8 bits stand for. `ice.wgsl` has it as `STEEPEST`.
-const STEEPEST: f32 = 40.0;
+const STEEPEST: f32 = 48.0;
 /// Cracks that begin somewhere in the tile; branches come on top.
 const CRACKS: usize = 11;
 
