@@ -134,7 +134,7 @@ impl Preset {
     }
 
     /// The components of which there are settings.
-    #[cfg(test)]
+    #[cfg(all(test, feature = "panel"))]
     pub(crate) fn components(&self) -> impl Iterator<Item = TypeId> {
         [&self.water, &self.sky, &self.camera].into_iter().flatten().map(|part| part.component)
     }
