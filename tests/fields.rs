@@ -21,13 +21,7 @@ fn foamy(stage: &mut Stage, foam: WaterFoam, water: impl Bundle) -> (Entity, Ent
     let surface = WaterSurface { view: SurfaceView::Foam, ripples: 0.0, ..default() };
     let entity = stage.spawn((Water::new(vec2(WIDTH, 24.0)), WaterWaves::still(), surface, foam));
     stage.app.world_mut().entity_mut(entity).insert(water);
-    let projection = OrthographicProjection {
-        scaling_mode: bevy::camera::ScalingMode::FixedHorizontal { viewport_width: WIDTH },
-        far: 100.0,
-        ..OrthographicProjection::default_3d()
-    };
-    let above = Transform::from_xyz(0.0, 20.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
-    (entity, stage.camera(Projection::Orthographic(projection), above))
+    (entity, stage.camera_above(Vec3::ZERO, WIDTH))
 }
 
 /// No foam from anywhere; it would live for 6 s.

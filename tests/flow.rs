@@ -20,12 +20,7 @@ fn stream(current: Vec2) -> (Stage, Entity) {
     let surface = WaterSurface { ripples: 0.05, view: SurfaceView::Normal, ..surface };
     let map = Grid::from_fn(UVec2::splat(30), 2.0, |_| current).unwrap();
     stage.spawn((water, waves, surface, optics, WaterFlow::from_map(map)));
-    let projection = OrthographicProjection {
-        scaling_mode: bevy::camera::ScalingMode::FixedVertical { viewport_height: VIEW },
-        ..OrthographicProjection::default_3d()
-    };
-    let pose = Transform::from_xyz(0.0, 10.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
-    let camera = stage.camera(Projection::Orthographic(projection), pose);
+    let camera = stage.camera_above(Vec3::ZERO, VIEW * SIZE.x as f32 / SIZE.y as f32);
     (stage, camera)
 }
 

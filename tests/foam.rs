@@ -1,10 +1,6 @@
 //! Foam as it is drawn: on the water and nowhere else, around what stands in the current, and as much as there is.
 use crate::stage::{Picture, Stage, still_water};
-use bevy::{
-    camera::{Exposure, ScalingMode},
-    light::light_consts::lux,
-    prelude::*,
-};
+use bevy::{camera::Exposure, light::light_consts::lux, prelude::*};
 use bevy_freshet::prelude::*;
 use core::f32::consts::PI;
 
@@ -103,15 +99,7 @@ fn drawn_foam_covers_as_much_as_there_is() {
     let white = WaterFoam { shear: 0.0, life: 1.0, pattern_size: 0.3, albedo: LinearRgba::WHITE, ..default() };
     let cells = WaterInteraction { cell: 0.5, ..default() };
     let water = stage.spawn((black_water(Vec2::splat(120.0)), white, cells, WaterFlow::uniform(vec2(1.0, 0.3))));
-    let cameras = [8.0, 90.0].map(|viewport_width| {
-        let projection = OrthographicProjection {
-            scaling_mode: ScalingMode::FixedHorizontal { viewport_width },
-            far: 100.0,
-            ..OrthographicProjection::default_3d()
-        };
-        let pose = Transform::from_xyz(0.0, 30.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
-        stage.camera(Projection::Orthographic(projection), pose)
-    });
+    let cameras = [8.0, 90.0].map(|viewport_width| stage.camera_above(Vec3::ZERO, viewport_width));
     stage.settle();
     let mean = |picture: &Picture| {
         picture.pixels().map(|(_, color)| color.x).sum::<f32>() / picture.size.element_product() as f32

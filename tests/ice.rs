@@ -4,7 +4,7 @@ use crate::{
     stage::{Picture, SIZE, Stage},
     waves,
 };
-use bevy::{camera::ScalingMode, ecs::system::RunSystemOnce, prelude::*};
+use bevy::{ecs::system::RunSystemOnce, prelude::*};
 use bevy_freshet::prelude::*;
 use freshet_hydro::grid::Grid;
 
@@ -40,13 +40,7 @@ fn along(stage: &mut Stage) -> Entity {
 
 /// A camera that looks straight down; columns of its picture lie along the river.
 fn above(stage: &mut Stage) -> Entity {
-    let projection = OrthographicProjection {
-        scaling_mode: ScalingMode::FixedHorizontal { viewport_width: WIDTH },
-        far: 100.0,
-        ..OrthographicProjection::default_3d()
-    };
-    let pose = Transform::from_xyz(0.0, 20.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
-    stage.camera(Projection::Orthographic(projection), pose)
+    stage.camera_above(Vec3::ZERO, WIDTH)
 }
 
 fn freeze(stage: &mut Stage, water: Entity, freezing: f32) {
@@ -169,6 +163,22 @@ fn bodies_feel_the_drawn_thickness_and_neither_waves_nor_current_under_it() {
         let felt = sample(&mut stage, vec3(x, 0.0, 3.0));
         assert!(felt.ice > 0.05 && felt.velocity == Vec3::ZERO && felt.normal == Vec3::Y, "{felt:?}");
         assert!((felt.height + 0.2 * felt.ice).abs() < 1e-5, "the level sinks by a fifth of the thickness: {felt:?}");
+    }
+}
+
+#[test]
+fn rays_meet_the_surface_that_the_ice_has_lowered() {
+    let mut stage = Stage::new();
+    let water = river(&mut stage);
+    freeze(&mut stage, water, 1.0);
+    stage.app.update();
+    stage.app.update();
+    for x in [-12.0, 0.0, 10.0] {
+        let felt = sample(&mut stage, vec3(x, 0.0, 3.0));
+        let ray = Ray3d::new(vec3(x, 2.0, 3.0), Dir3::NEG_Y);
+        let ask = move |water: WaterQuery| water.raycast(ray, 10.0);
+        let hit = stage.app.world_mut().run_system_once(ask).unwrap().unwrap();
+        assert!(felt.ice > 0.05 && (hit.position.y - felt.height).abs() < 1e-3, "{hit:?}, {felt:?}");
     }
 }
 

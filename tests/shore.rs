@@ -15,13 +15,7 @@ fn beach(stage: &mut Stage, view: SurfaceView) -> Entity {
     let (water, waves, surface, optics) = still_water(Vec2::splat(18.0));
     let optics = WaterOptics { edge_depth: 0.3, reflectivity: 0.0, absorption: Vec3::splat(1e3), ..optics };
     stage.spawn((water, waves, WaterSurface { view, ..surface }, optics));
-    let projection = OrthographicProjection {
-        scaling_mode: bevy::camera::ScalingMode::FixedHorizontal { viewport_width: 12.0 },
-        far: 100.0,
-        ..OrthographicProjection::default_3d()
-    };
-    let pose = Transform::from_xyz(0.0, 20.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
-    stage.camera(Projection::Orthographic(projection), pose)
+    stage.camera_above(Vec3::ZERO, 12.0)
 }
 
 /// World x of the centre of a column of pixels.

@@ -1,7 +1,7 @@
 //! A small headless scene whose pixels are read back as linear radiance.
 use bevy::{
     app::PluginsState,
-    camera::{Hdr, RenderTarget},
+    camera::{Hdr, RenderTarget, ScalingMode},
     core_pipeline::tonemapping::Tonemapping,
     prelude::*,
     render::{
@@ -106,6 +106,17 @@ impl Stage {
             projection.into(),
             pose,
         ))
+    }
+
+    /// A camera 20 m over `center` that looks straight down at a stretch of `width` metres, x to the right and z down.
+    pub fn camera_above(&mut self, center: Vec3, width: f32) -> Entity {
+        let projection = OrthographicProjection {
+            scaling_mode: ScalingMode::FixedHorizontal { viewport_width: width },
+            far: 100.0,
+            ..OrthographicProjection::default_3d()
+        };
+        let pose = Transform::from_translation(center + Vec3::Y * 20.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
+        self.camera(Projection::Orthographic(projection), pose)
     }
 
     pub fn target(&mut self, size: UVec2) -> Handle<Image> {

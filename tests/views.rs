@@ -19,13 +19,7 @@ fn scene(stage: &mut Stage, view: SurfaceView, flow: Option<WaterFlow>) -> Pictu
     if let Some(flow) = flow {
         stage.app.world_mut().entity_mut(water).insert(flow);
     }
-    let projection = OrthographicProjection {
-        scaling_mode: bevy::camera::ScalingMode::FixedHorizontal { viewport_width: WIDTH },
-        far: 100.0,
-        ..OrthographicProjection::default_3d()
-    };
-    let pose = Transform::from_xyz(0.0, 20.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
-    let camera = stage.camera(Projection::Orthographic(projection), pose);
+    let camera = stage.camera_above(Vec3::ZERO, WIDTH);
     stage.picture(camera)
 }
 
@@ -126,13 +120,7 @@ fn disturbed(view: SurfaceView, disturb: impl FnOnce(&mut Stage, Vec3)) -> Pictu
     let (water, waves, surface, optics) = still_water(Vec2::splat(39.0));
     let foam = WaterFoam { shore: 0.0, ..default() };
     stage.spawn((water, waves, WaterSurface { view, ..surface }, optics, foam));
-    let projection = OrthographicProjection {
-        scaling_mode: bevy::camera::ScalingMode::FixedHorizontal { viewport_width: WIDTH },
-        far: 100.0,
-        ..OrthographicProjection::default_3d()
-    };
-    let pose = Transform::from_xyz(0.0, 20.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
-    let camera = stage.camera(Projection::Orthographic(projection), pose);
+    let camera = stage.camera_above(Vec3::ZERO, WIDTH);
     stage.settle();
     disturb(&mut stage, PLACE.extend(0.0).xzy());
     stage.run(1.0 / 60.0);

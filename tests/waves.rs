@@ -16,13 +16,7 @@ pub fn scene(stage: &mut Stage, waves: WaterWaves, pose: Transform) -> Entity {
     let (water, _, surface, optics) = still_water(Vec2::splat(WIDTH + 6.0));
     let surface = WaterSurface { view: SurfaceView::Height, cell: 0.03, cells: 256, ..surface };
     stage.spawn((water, waves, surface, optics, pose));
-    let projection = OrthographicProjection {
-        scaling_mode: bevy::camera::ScalingMode::FixedHorizontal { viewport_width: WIDTH },
-        far: 100.0,
-        ..OrthographicProjection::default_3d()
-    };
-    let above = Transform::from_translation(pose.translation + Vec3::Y * 20.0).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
-    stage.camera(Projection::Orthographic(projection), above)
+    stage.camera_above(pose.translation, WIDTH)
 }
 
 /// Drawn and queried heights over the still surface at 1000 places of the picture.

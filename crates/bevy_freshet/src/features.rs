@@ -22,7 +22,7 @@ pub enum Feature {
     Fresnel,
     /// The current, drawn and felt: [`WaterFlow`].
     Flow,
-    /// Glitter of sun and moon: [`WaterSurface::sunlight`].
+    /// Glitter of sun, moon and lamps: [`WaterSurface::sunlight`].
     Light,
     /// The camera's fog on the water: [`WaterOptics::fog`].
     Fog,
@@ -123,7 +123,7 @@ impl Feature {
             Self::Dispersion => "Different refraction per colour.",
             Self::Fresnel => "Reflection that depends on the angle; off, half of the light is reflected everywhere.",
             Self::Flow => "The current, drawn and felt.",
-            Self::Light => "Glitter of sun and moon.",
+            Self::Light => "Glitter of sun, moon and lamps.",
             Self::Fog => "The camera's fog on the water.",
             Self::Waves => "Waves, drawn and felt.",
             Self::Ripples => "Fine ripples.",

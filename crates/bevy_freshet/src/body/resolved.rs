@@ -84,10 +84,17 @@ impl ResolvedWater {
         self.ice.as_ref().map_or(0.0, |ice| ice.level_drop * ice.thickness(place))
     }
 
-    /// Height of the waves over the still surface at local `place`, m, as if there were water everywhere.
-    pub fn elevation(&self, place: Vec2) -> f32 {
+    /// The particle at rest that is above local `place`, and the height of the surface there over the still water's, m, as if
+    /// there were water everywhere: waves, lowered by ice.
+    pub fn surface(&self, place: Vec2) -> (Vec2, f32) {
         let rest = self.waves.rest_below(place, |rest| self.fade(rest));
-        self.waves.displacement(rest, self.fade(rest)).y
+        (rest, self.waves.displacement(rest, self.fade(rest)).y - self.drop(rest))
+    }
+
+    /// Bounds of the height of the surface over the still water's, m: the lowest it can be, and the highest.
+    pub fn elevations(&self) -> (f32, f32) {
+        let amplitude = self.waves.total_amplitude();
+        (-amplitude - self.ice.as_ref().map_or(0.0, ResolvedIce::deepest_drop), amplitude)
     }
 
     /// The middle of the still surface, turned as the water.

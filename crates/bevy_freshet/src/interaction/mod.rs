@@ -52,8 +52,10 @@ impl Plugin for InteractionPlugin {
             .configure_sets(
                 PostUpdate,
                 (
-                    WaterSystems::Displace.after(WaterSystems::Resolve).before(WaterSystems::Present),
-                    FieldSystems::Deposit.in_set(WaterSystems::Displace),
+                    WaterSystems::Displace.after(WaterSystems::Resolve),
+                    (FieldSystems::Window, FieldSystems::Deposit, FieldSystems::Step)
+                        .chain()
+                        .in_set(WaterSystems::Displace),
                 ),
             )
             .add_systems(

@@ -105,10 +105,10 @@ impl Pen {
         // Heights in this frame are those over the still surface.
         let surface_from_world = water.pose().compute_affine().inverse();
         let (min, max) = bounds(parts, surface_from_world)?;
-        let amplitude = water.waves.total_amplitude();
+        let (lowest, highest) = water.elevations();
         let (first, last) = (window.origin(), window.origin() + window.extent());
         let beside = min.xz().cmpgt(last).any() || max.xz().cmplt(first).any();
-        if beside || min.y >= amplitude || max.y < -amplitude || window.size.min_element() == 0 {
+        if beside || min.y >= highest || max.y < lowest || window.size.min_element() == 0 {
             return None;
         }
         let waves = Lattice::over(water, min.xz(), max.xz(), HEIGHT_ERROR * window.cell);
@@ -175,15 +175,17 @@ impl Lattice {
         let trains = &water.waves.trains;
         let curvature = |train: &WaveTrain| train.wave_vector.length_squared() * train.amplitude;
         let curvature = (0.5 * trains.iter().map(|train| curvature(train).powi(2)).sum::<f32>()).sqrt();
-        if curvature <= 0.0 {
+        if curvature <= 0.0 && water.ice.is_none() {
             return Self::default();
         }
         let (center, size) = (0.5 * (min + max), max - min);
         let least = size.max_element() / (MOST_PLACES - 1.0);
-        let step = (8.0 * error / curvature).sqrt().max(least).min(size.max_element());
+        // The front of ice is a step of its own.
+        let widest = if water.ice.is_some() { least } else { (8.0 * error / curvature).sqrt() };
+        let step = widest.max(least).min(size.max_element());
         let places = (size / step).ceil() + 1.0;
         let place = |cell: UVec2| center + (cell.as_vec2() + 0.5 - places / 2.0) * step;
-        let heights = Grid::from_fn(places.as_uvec2(), step, |cell| water.elevation(place(cell)));
+        let heights = Grid::from_fn(places.as_uvec2(), step, |cell| water.surface(place(cell)).1);
         Self { center, heights: heights.ok() }
     }
 

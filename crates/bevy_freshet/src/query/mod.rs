@@ -55,10 +55,10 @@ fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSam
     if !water.covers(local) {
         return None;
     }
-    let rest = water.waves.rest_below(local, |rest| water.fade(rest));
+    let (rest, elevation) = water.surface(local);
     let fade = water.fade(rest);
-    let height = water.level - water.drop(rest) + water.waves.displacement(rest, fade).y;
-    let depth = water.still_depth(local) + (height - water.level);
+    let height = water.level + elevation;
+    let depth = water.still_depth(local) + elevation;
     if depth <= 0.0 {
         return None;
     }

@@ -46,11 +46,11 @@ fn meet(water: &ResolvedWater, ray: Ray3d, max: f32) -> Option<f32> {
     let direction = local_from_world.transform_vector3a(ray.direction.as_vec3().into());
     let height = |t: f32| {
         let point = origin + direction * t;
-        point.y - water.elevation(Vec3::from(point).xz())
+        point.y - water.surface(Vec3::from(point).xz()).1
     };
 
-    let amplitude = water.waves.total_amplitude() + TOLERANCE;
-    let half = vec3(water.half_size.x, amplitude, water.half_size.y);
+    let (lowest, highest) = water.elevations();
+    let half = vec3(water.half_size.x, highest.max(-lowest) + TOLERANCE, water.half_size.y);
     let (from, to) = inside_box(origin, direction, half.into(), max)?;
     let pace = direction.y.abs() + Vec3::from(direction).xz().length() * steepest_slope(water);
     let first = height(from);
@@ -86,10 +86,10 @@ fn bisect(mut from: f32, mut to: f32, first: f32, height: impl Fn(f32) -> f32) -
 }
 
 /// Bound of the slope of the surface. The slope of the sum of all trains is at most Σ k A against particles at rest, which
-/// are squeezed to a share of 1 − Σ k A at most; where the waves fade over a shelving bed a little is added.
+/// are squeezed to a share of 1 − Σ k A at most; where the waves fade over a shelving bed or at the front of ice a little is added.
 fn steepest_slope(water: &ResolvedWater) -> f32 {
     let steepness = water.waves.total_steepness().min(0.95);
-    let shelving = if water.bed.is_some() { 0.3 } else { 0.0 };
+    let shelving = if water.bed.is_some() || water.ice.is_some() { 0.3 } else { 0.0 };
     steepness / (1.0 - steepness) + shelving
 }
 

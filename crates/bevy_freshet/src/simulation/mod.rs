@@ -30,7 +30,6 @@ mod window;
 pub(crate) use deposits::{Deposits, SilhouetteCell, Stroke};
 pub(crate) use window::FieldWindow;
 
-use crate::schedule::WaterSystems;
 use bevy::{
     asset::embedded_asset,
     core_pipeline::schedule::camera_driver,
@@ -52,7 +51,7 @@ pub(crate) struct FieldPictures {
     pub matter: Option<Handle<Image>>,
 }
 
-/// The steps of the fields within [`WaterSystems::Displace`], one after the other.
+/// The steps of the fields within [`WaterSystems::Displace`](crate::WaterSystems::Displace), one after the other.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum FieldSystems {
     /// The [`FieldWindow`] of every water is chosen.
@@ -82,24 +81,10 @@ impl Plugin for SimulationPlugin {
         embedded_asset!(app, "transport.wgsl");
         embedded_asset!(app, "compose.wgsl");
 
-        app.add_plugins(ExtractComponentPlugin::<frame::FieldFrame>::default())
-            .configure_sets(
-                PostUpdate,
-                (
-                    WaterSystems::Displace
-                        .after(WaterSystems::Resolve)
-                        .after(TransformSystems::Propagate)
-                        // The sky tints the fog of the cameras that windows look at.
-                        .after(crate::sky::SkySystems::Fog),
-                    (FieldSystems::Window, FieldSystems::Deposit, FieldSystems::Step)
-                        .chain()
-                        .in_set(WaterSystems::Displace),
-                ),
-            )
-            .add_systems(
-                PostUpdate,
-                (window::place_windows.in_set(FieldSystems::Window), progress::step_fields.in_set(FieldSystems::Step)),
-            );
+        app.add_plugins(ExtractComponentPlugin::<frame::FieldFrame>::default()).add_systems(
+            PostUpdate,
+            (window::place_windows.in_set(FieldSystems::Window), progress::step_fields.in_set(FieldSystems::Step)),
+        );
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         render_app
             .init_resource::<plan::FieldPlans>()

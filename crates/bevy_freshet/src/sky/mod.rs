@@ -63,7 +63,7 @@ impl Plugin for SkyPlugin {
                 PostUpdate,
                 (
                     SkySystems::Paint.before(TransformSystems::Propagate),
-                    SkySystems::Fog.after(TransformSystems::Propagate).before(WaterSystems::Present),
+                    SkySystems::Fog.after(TransformSystems::Propagate).before(WaterSystems::Displace),
                 ),
             )
             .add_systems(PostUpdate, paint.run_if(resource_exists::<Assets<Image>>))

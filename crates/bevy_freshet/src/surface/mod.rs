@@ -142,7 +142,6 @@ impl Plugin for SurfacePlugin {
             .configure_sets(
                 PostUpdate,
                 WaterSystems::Present
-                    .after(WaterSystems::Resolve)
                     .after(WaterSystems::Displace)
                     .after(TransformSystems::Propagate)
                     .after(VisibilitySystems::VisibilityPropagate)

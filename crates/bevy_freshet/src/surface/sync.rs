@@ -14,7 +14,6 @@ use bevy::{
     asset::RenderAssetUsages,
     camera::{primitives::Aabb, visibility::RenderLayers},
     light::{NotShadowCaster, NotShadowReceiver},
-    math::bounding::Aabb3d,
     platform::collections::{HashMap, HashSet},
     prelude::*,
     render::{
@@ -239,10 +238,10 @@ pub(crate) fn sync_surfaces(
 
 /// Pose and bounds of a surface: its vertices are placed by the shader, so the bounds are what culling knows of it.
 fn place(water: &ResolvedWater) -> (Transform, GlobalTransform, Aabb) {
-    let amplitude = water.waves.total_amplitude() + 0.01;
+    let (lowest, highest) = water.elevations();
     let pose = water.pose();
-    let half = water.half_size + amplitude;
-    let mut bounds = Aabb3d::new(Vec3::ZERO, vec3(half.x, amplitude, half.y));
-    bounds.min.y -= water.ice.as_ref().map_or(0.0, |ice| ice.deepest_drop());
-    (pose, pose.into(), Aabb::from_min_max(bounds.min.into(), bounds.max.into()))
+    // Crests lean over by their amplitude; a centimetre for what is rounded.
+    let half = water.half_size + highest + 0.01;
+    let corner = |side: Vec2, height: f32| vec3(side.x, height, side.y);
+    (pose, pose.into(), Aabb::from_min_max(corner(-half, lowest - 0.01), corner(half, highest + 0.01)))
 }

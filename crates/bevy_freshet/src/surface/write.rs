@@ -320,3 +320,14 @@ fn white_cube() -> Image {
         Some(TextureViewDescriptor { dimension: Some(TextureViewDimension::Cube), ..default() });
     image
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shader_knows_the_patches_of_foam() {
+        let [x, y] = [FOAM_PATCH.x_axis, FOAM_PATCH.y_axis].map(|axis| format!("vec2({}, {})", axis.x, axis.y));
+        assert!(include_str!("foam.wgsl").contains(&format!("const PATCH: mat2x2<f32> = mat2x2<f32>({x}, {y});")));
+    }
+}
