@@ -8,11 +8,16 @@ mod common;
 #[path = "../examples/common/river.rs"]
 mod river;
 
-use bevy::{prelude::*, time::TimeUpdateStrategy};
+use bevy::{
+    diagnostic::DiagnosticsStore, prelude::*, render::diagnostic::RenderDiagnosticsPlugin, time::TimeUpdateStrategy,
+};
 use bevy_freshet::{features::Feature, prelude::*};
 use clap::Parser;
 use common::{Options, size};
-use std::time::{Duration, Instant};
+use std::{
+    collections::BTreeMap,
+    time::{Duration, Instant},
+};
 
 /// What is measured, and how.
 #[derive(Parser)]
@@ -38,6 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("River, camera {}, {}x{}, {adapter}.", arguments.camera, arguments.size.x, arguments.size.y);
     println!("Medians of {} frames after {WARM_UP} of warm-up.\n", arguments.frames);
     let dry = bench.table_of_the_water();
+    bench.table_of_passes();
     bench.table_of_features(dry);
     bench.table_of_grids(dry);
     bench.table_of_bodies();
@@ -61,6 +67,7 @@ impl Bench {
             ..Options::parse_from(["bench"])
         };
         let mut app = river::app(&options)?;
+        app.add_plugins(RenderDiagnosticsPlugin);
         common::start(&mut app);
         app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(common::FRAME)));
         let mut waters = app.world_mut().query_filtered::<Entity, With<Water>>();
@@ -89,6 +96,20 @@ impl Bench {
         times[times.len() / 2]
     }
 
+    /// Time that each pass takes on the GPU in a frame, of all cameras together, ms.
+    fn passes(&mut self) -> BTreeMap<String, f64> {
+        let start = Instant::now();
+        self.median();
+        let frames = f64::from(WARM_UP + self.frames);
+        let store = self.app.world().resource::<DiagnosticsStore>();
+        let passes = store.iter().filter_map(|pass| {
+            let name = pass.path().as_str().strip_prefix("render/")?.strip_suffix("/elapsed_gpu")?;
+            let new = pass.measurements().filter(|measured| measured.time > start);
+            Some((name.to_owned(), new.map(|measured| measured.value).sum::<f64>() / frames))
+        });
+        passes.collect()
+    }
+
     /// Median with all on and with `change` made and unmade again, ms.
     fn compare(&mut self, change: impl FnOnce(&mut World, Entity), undo: impl FnOnce(&mut World, Entity)) -> [f64; 2] {
         let water = self.water;
@@ -99,30 +120,36 @@ impl Bench {
         [on, changed]
     }
 
+    /// Shows the water, or hides it and all that works for it.
+    fn show(world: &mut World, water: Entity, on: bool) {
+        let mut water = world.entity_mut(water);
+        Feature::Interaction.switch(on, &mut water);
+        Feature::Reflection.switch(on, &mut water);
+        water.insert(if on { Visibility::Inherited } else { Visibility::Hidden });
+    }
+
     /// The same scene with and without water; gives the share of the frame that is not water.
     fn table_of_the_water(&mut self) -> f64 {
-        let show = |visibility| move |world: &mut World, water: Entity| _ = world.entity_mut(water).insert(visibility);
-        let still = |on: bool| {
-            move |world: &mut World, water: Entity| {
-                Feature::Interaction.switch(on, &mut world.entity_mut(water));
-                Feature::Reflection.switch(on, &mut world.entity_mut(water));
-            }
-        };
-        let [on, off] = self.compare(
-            |world, water| {
-                still(false)(world, water);
-                show(Visibility::Hidden)(world, water);
-            },
-            |world, water| {
-                show(Visibility::Inherited)(world, water);
-                still(true)(world, water);
-            },
-        );
+        let show = |on| move |world: &mut World, water| Self::show(world, water, on);
+        let [on, off] = self.compare(show(false), show(true));
         println!("| scene | frame (ms) | ratio |\n|---|---|---|");
         println!("| all on | {on:.1} | 1.00 |");
         println!("| without water | {off:.1} | {:.2} |", off / on);
         println!("| the water | {:.1} | {:.2} |\n", on - off, 1.0 - off / on);
         off / on
+    }
+
+    /// Where the GPU's time goes. Shadow maps, copies and clears are not among the passes.
+    fn table_of_passes(&mut self) {
+        let on = self.passes();
+        Self::show(self.app.world_mut(), self.water, false);
+        let off = self.passes();
+        Self::show(self.app.world_mut(), self.water, true);
+        println!("| pass | all on (ms) | without water (ms) |\n|---|---|---|");
+        for (pass, time) in on.iter().filter(|(_, time)| **time > 0.5) {
+            println!("| {pass} | {time:.1} | {:.1} |", off.get(pass).unwrap_or(&0.0));
+        }
+        println!();
     }
 
     /// One row of a table: the frame and its water, against all on.

@@ -32,7 +32,9 @@ impl River {
         let waves = WaterWaves::wind(4.0, 500.0, vec2(0.4, 1.0));
         let foam = WaterFoam { speed_threshold: 0.5, speed: 0.5, ..default() };
         let water = stage.spawn((Water::new(Vec2::splat(36.0)), optics, waves, foam, WaterFlow::from_map(map)));
-        stage.app.world_mut().entity_mut(water).insert(WaterIce::frozen(0.15));
+        // With fewer cells of the mesh where there is less to show, all pixels would change a little.
+        let surface = WaterSurface { mesh_error: 0.0, ..default() };
+        stage.app.world_mut().entity_mut(water).insert((surface, WaterIce::frozen(0.15)));
         if let Some(feature) = off {
             feature.switch(false, &mut stage.app.world_mut().entity_mut(water));
         }

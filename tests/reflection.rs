@@ -232,3 +232,55 @@ fn a_mirror_refreshed_every_fourth_frame_shows_the_same_still_scene() {
         assert!(always.distance(seldom) < 1e-3, "{pixel}: {always} and {seldom}");
     }
 }
+
+/// A lit wall behind the water, and a beam before it that throws its shadow on it.
+fn scene_with_shadow(stage: &mut Stage) -> Entity {
+    let water = scene(stage);
+    let world = stage.app.world_mut();
+    let white = world.resource_mut::<Assets<StandardMaterial>>().add(Color::WHITE);
+    let mut meshes = world.resource_mut::<Assets<Mesh>>();
+    let [wall, beam] = [vec3(30.0, 8.0, 0.5), vec3(4.0, 0.8, 0.4)].map(|size| meshes.add(Cuboid::from_size(size)));
+    for (mesh, place) in [(wall, vec3(0.0, LEVEL + 4.2, -9.0)), (beam, vec3(0.0, LEVEL + 4.0, -6.0))] {
+        stage.spawn((Mesh3d(mesh), MeshMaterial3d(white.clone()), Transform::from_translation(place)));
+    }
+    let sun = DirectionalLight { illuminance: 10_000.0, shadow_maps_enabled: true, ..default() };
+    stage.spawn((sun, Transform::default().looking_to(vec3(0.2, -0.6, -1.0), Vec3::Y)));
+    water
+}
+
+#[test]
+fn a_mirror_shows_shadows_of_the_sun_from_the_maps_of_its_viewer() {
+    use bevy::{pbr::ViewLightEntities, render::RenderApp};
+    let mut stage = Stage::new();
+    let water = scene_with_shadow(&mut stage);
+    let camera = stage.camera(perspective(), level_pose());
+    let mut picture = |own_shadows| {
+        stage.app.world_mut().get_mut::<WaterReflection>(water).unwrap().own_shadows = own_shadows;
+        let picture = stage.picture(camera);
+        let world = stage.app.sub_app_mut(RenderApp).world_mut();
+        let passes: usize = world.query::<&ViewLightEntities>().iter(world).map(|view| view.lights.len()).sum();
+        (picture, passes)
+    };
+    let ((own, passes), (shared, fewer)) = (picture(true), picture(false));
+    assert_eq!((passes, fewer), (8, 4), "four cascades for each view, and for both together");
+    let world = stage.app.world_mut();
+    world.query::<&mut DirectionalLight>().single_mut(world).unwrap().shadow_maps_enabled = false;
+    let without = stage.picture(camera);
+    // Above this row is the wall, below it are mirror images.
+    let shore = stage.project(camera, vec3(0.0, LEVEL, -8.7)).y as u32;
+    let mut shaded = UVec2::ZERO;
+    for ((pixel, own), ((_, shared), (_, without))) in own.pixels().zip(shared.pixels().zip(without.pixels())) {
+        if without.x > 1.5 * own.x {
+            shaded += if pixel.y < shore { UVec2::X } else { UVec2::Y };
+        }
+        if pixel.y < shore {
+            assert_eq!(own, shared, "{pixel}: the viewer's own shadows");
+        }
+    }
+    assert!(shaded.min_element() > 300, "pixels in the shadow, and in its mirror image: {shaded}");
+    let differing =
+        own.pixels().zip(shared.pixels()).filter(|((_, own), (_, shared))| own.distance(*shared) > 0.05 * own.length());
+    let differing = differing.count() as u32;
+    // Texels of the two maps lie differently along the rim of the shadow.
+    assert!(differing < shaded.y / 4, "{differing} pixels differ of {shaded} in the shadow");
+}

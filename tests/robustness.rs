@@ -97,6 +97,7 @@ fn unusable_settings_neither_panic_nor_draw_anything_wrong() {
 const UNUSABLE: &str = "
     WaterWaves::trains WaterWaves::depth WaterWaves::fade_depth WaterFlow::uniform WaterFlow::scale
     WaterSurface::cell WaterSurface::cells WaterSurface::ripples WaterSurface::ripple_size WaterSurface::roughness
+    WaterSurface::mesh_error
     WaterReflection::resolution WaterReflection::refresh WaterReflection::clip_offset WaterReflection::distance
     WaterReflection::distortion
     WaterOptics::absorption WaterOptics::backscatter WaterOptics::index Fresnel::Simple::correction
@@ -114,7 +115,15 @@ fn parameters_that_are_not_numbers_are_named_once_and_fall_back_to_sane_ones() {
     let water = (
         water,
         WaterWaves { trains: vec![train; 12], depth: nan, fade_depth: nan },
-        WaterSurface { cell: nan, cells: 0, ripples: inf, ripple_size: -1.0, roughness: nan, ..default() },
+        WaterSurface {
+            cell: nan,
+            cells: 0,
+            ripples: inf,
+            ripple_size: -1.0,
+            roughness: nan,
+            mesh_error: nan,
+            ..default()
+        },
         WaterReflection { resolution: nan, refresh: 0, clip_offset: nan, distance: -1.0, distortion: nan, ..default() },
         WaterFlow { uniform: Vec2::splat(nan), scale: nan, ..default() },
         WaterOptics {

@@ -1,5 +1,5 @@
 //! What is drawn is what is felt.
-use crate::stage::{SIZE, Stage, still_water};
+use crate::stage::{Picture, SIZE, Stage, still_water};
 use bevy::{ecs::system::RunSystemOnce, prelude::*};
 use bevy_freshet::prelude::*;
 
@@ -14,7 +14,7 @@ pub fn sea() -> WaterWaves {
 /// Waves on a fine mesh, whose heights a camera draws from straight above.
 pub fn scene(stage: &mut Stage, waves: WaterWaves, pose: Transform) -> Entity {
     let (water, _, surface, optics) = still_water(Vec2::splat(WIDTH + 6.0));
-    let surface = WaterSurface { view: SurfaceView::Height, cell: 0.03, cells: 256, ..surface };
+    let surface = WaterSurface { view: SurfaceView::Height, cell: 0.03, cells: 256, mesh_error: 0.0, ..surface };
     stage.spawn((water, waves, surface, optics, pose));
     stage.camera_above(pose.translation, WIDTH)
 }
@@ -117,4 +117,27 @@ fn a_crest_travels_with_the_phase_speed() {
     let moved = (crest(&mut stage) - before).rem_euclid(2.0);
     let speed = freshet_hydro::waves::angular_frequency(core::f32::consts::TAU / 2.0, depth) / core::f32::consts::PI;
     assert!((moved - speed * 0.5).abs() < 0.01 * speed * 0.5, "moved {moved} m, expected {}", speed * 0.5);
+}
+
+#[test]
+fn a_mesh_with_only_the_cells_that_a_viewer_needs_looks_like_a_full_one() {
+    let mut stage = Stage::new();
+    let (water, _, surface, optics) = still_water(Vec2::splat(200.0));
+    let surface = WaterSurface { view: SurfaceView::Normal, ..surface };
+    let water = stage.spawn((water, sea(), surface, optics));
+    let pose = Transform::from_xyz(0.0, 3.0, 0.0).looking_to(vec3(0.3, -0.15, -1.0), Vec3::Y);
+    let camera = stage.camera(PerspectiveProjection::default(), pose);
+    let mut picture = |mesh_error| {
+        stage.app.world_mut().get_mut::<WaterSurface>(water).unwrap().mesh_error = mesh_error;
+        stage.picture(camera)
+    };
+    let [full, usual, flat] = [0.0, WaterSurface::default().mesh_error, 4.0].map(&mut picture);
+    // Root mean square difference of the normals.
+    let difference = |one: &Picture, other: &Picture| {
+        let squares = one.pixels().zip(other.pixels()).map(|((_, one), (_, other))| one.distance_squared(other));
+        (squares.sum::<f32>() / (SIZE.x * SIZE.y) as f32).sqrt()
+    };
+    let (usual, flat) = (difference(&full, &usual), difference(&full, &flat));
+    assert!(usual < 0.003, "usual {usual}");
+    assert!(flat > 3.0 * usual, "usual {usual}, four pixels off {flat}");
 }

@@ -159,6 +159,7 @@ const SURFACE: Group = Group {
         choice("Sunlight", "sunlight", "Whether sun and moon glitter."),
         row("Mesh cell", "cell", [0.005, 10.0], "m", "Spacing of the mesh near the camera.").logarithmic(),
         row("Mesh cells", "cells", [8.0, 256.0], "", "Cells across the finest part of the mesh."),
+        row("Mesh error", "mesh_error", [0.0, 4.0], "px", "How far off its place a coarser mesh may draw each wave."),
     ],
 };
 
@@ -194,6 +195,7 @@ const REFLECTION: Group = Group {
         choice("Planar mirror", "planar", "Whether the scene is mirrored; off: the sky alone."),
         row("Mirror resolution", "resolution", [0.05, 1.0], "", "Size of the mirror's picture, of the view's."),
         row("Refresh", "refresh", [1.0, 8.0], "frames", "The mirror is drawn in every n-th frame."),
+        choice("Own shadows", "own_shadows", "Whether the mirror draws shadow maps of its own, or uses its viewer's."),
         row("Distortion", "distortion", [0.0, 1.0], "", "How strongly waves distort the mirror; nature 1."),
         row("Mirror distance", "distance", [0.01, 1e3], "m", "Assumed distance of mirrored things.").logarithmic(),
         row("Clip offset", "clip_offset", [0.0, 1.0], "m", "How far below the surface things are mirrored.")

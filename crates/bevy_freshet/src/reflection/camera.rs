@@ -2,6 +2,7 @@
 use super::{
     WaterReflection,
     projection::{clip_plane, mirrored, reflection},
+    shadows::SharesShadows,
 };
 use crate::{
     body::ResolvedWater,
@@ -209,6 +210,11 @@ fn draw(commands: &mut Commands, mirror: &mut Mirror, viewer: &ViewerData, wante
     // all point lights.
     if matches!(projection, Projection::Custom(_)) {
         camera.try_insert(ClusterConfig::Single);
+    }
+    if wanted.settings.own_shadows || wanted.settings.layers.is_some() {
+        camera.try_remove::<SharesShadows>();
+    } else {
+        camera.try_insert(SharesShadows { viewer: viewer.entity });
     }
     camera.try_insert(projection);
     viewer.insert_lighting(&mut camera);

@@ -2,15 +2,21 @@
 //!
 //! A mirror camera stands where its viewer's eye is mirrored at the still surface, sees with the same projection, and
 //! draws everything above the water to a texture; the surface looks up where a reflected ray leaves that picture. What
-//! it costs is roughly the scene at the mirror's resolution, shadow cascades included.
+//! it costs is roughly the scene at the mirror's resolution; shadow maps are shared with the viewer.
 mod camera;
 mod projection;
+mod shadows;
 
 pub use camera::MirrorCamera;
 pub(crate) use camera::{MirrorKey, Mirrors, update_mirrors};
 
 use crate::schedule::WaterSystems;
-use bevy::{camera::visibility::RenderLayers, prelude::*};
+use bevy::{
+    camera::visibility::RenderLayers,
+    light::SimulationLightSystems,
+    prelude::*,
+    render::{Render, RenderApp, RenderSystems, extract_component::ExtractComponentPlugin},
+};
 
 /// How a water reflects the scene. Waters of one level share the mirror; the settings of the one with the finest
 /// resolution count.
@@ -31,6 +37,9 @@ pub struct WaterReflection {
     pub distance: f32,
     /// How strongly the surface's slopes distort the reflection, 0…1. Default 1, as in nature.
     pub distortion: f32,
+    /// Whether the mirror has shadow maps of the sun for itself. Default false: it uses its viewer's and so draws none, but
+    /// mirrored things that lie outside them are in the light. A mirror with other `layers` has its own.
+    pub own_shadows: bool,
     /// What is mirrored. Default `None`: what the viewing camera sees.
     pub layers: Option<RenderLayers>,
 }
@@ -44,6 +53,7 @@ impl Default for WaterReflection {
             clip_offset: 0.02,
             distance: 3.0,
             distortion: 1.0,
+            own_shadows: false,
             layers: None,
         }
     }
@@ -54,9 +64,22 @@ pub(crate) struct ReflectionPlugin;
 
 impl Plugin for ReflectionPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Mirrors>().add_systems(
-            PostUpdate,
-            update_mirrors.in_set(WaterSystems::Present).after(crate::surface::advance_ripples),
-        );
+        app.add_plugins(ExtractComponentPlugin::<shadows::SharesShadows>::default())
+            .init_resource::<Mirrors>()
+            .add_systems(
+                PostUpdate,
+                (
+                    update_mirrors.in_set(WaterSystems::Present).after(crate::surface::advance_ripples),
+                    shadows::share_cascades
+                        .after(SimulationLightSystems::UpdateDirectionalLightCascades)
+                        .before(SimulationLightSystems::UpdateLightFrusta),
+                ),
+            );
+        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+            render_app.add_systems(
+                Render,
+                shadows::skip_drawn_shadows.after(RenderSystems::CreateViews).before(RenderSystems::Specialize),
+            );
+        }
     }
 }

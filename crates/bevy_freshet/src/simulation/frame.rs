@@ -41,6 +41,8 @@ pub(crate) struct FieldWork {
     pub transport_steps: u32,
     /// Whether a current carries the rings.
     pub drifts: bool,
+    /// Whether there is dye.
+    pub is_dyed: bool,
     pub generation: u64,
     /// Where the render world writes the generation that it draws.
     pub drawn: Arc<AtomicU64>,

@@ -151,7 +151,8 @@ impl Surroundings<'_> {
         }
         for _ in 0..work.transport_steps {
             let [from, to] = &state.matter;
-            runs.push(self.run(&stages.transport, state, &[&state.stream, from, to], all));
+            let transport = &stages.transport[usize::from(work.is_dyed)];
+            runs.push(self.run(transport, state, &[&state.stream, from, to], all));
             state.matter.swap(0, 1);
         }
     }

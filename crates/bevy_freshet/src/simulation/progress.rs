@@ -25,7 +25,7 @@ const MOST_STEPS: u32 = 8;
 const LATE_FRAMES: u32 = 30;
 /// Strokes that may wait for a step; of more the oldest are forgotten.
 const MOST_STROKES: usize = 4096;
-/// After so many times their life, what is left of rings and matter is not worth a step: e⁻¹⁰.
+/// After so many times their life, what is left of rings, foam and dye is not worth a step: e⁻¹⁰.
 const LIVES: f32 = 10.0;
 
 /// What the fields of a water have come to.
@@ -37,9 +37,10 @@ pub(crate) struct FieldProgress {
     late: u32,
     drafts: Drafts,
     strokes: Vec<Stroke>,
-    /// For how long rings and matter are worth steps, s.
+    /// For how long rings, foam and dye are worth steps, s.
     rings_last: f32,
-    matter_lasts: f32,
+    foam_lasts: f32,
+    dye_lasts: f32,
     ground: Ground,
     /// Counts the grounds.
     version: u64,
@@ -151,9 +152,12 @@ impl FieldProgress {
             self.keep_alive(&work, settings);
             let run = STEP.as_secs_f32() * steps as f32;
             work.ring_steps = if self.rings_last > 0.0 { steps * parts.rings } else { 0 };
-            work.transport_steps = if self.matter_lasts > 0.0 { steps * parts.transport } else { 0 };
+            work.is_dyed = self.dye_lasts > 0.0;
+            let matters = work.is_dyed || self.foam_lasts > 0.0;
+            work.transport_steps = if matters { steps * parts.transport } else { 0 };
             self.rings_last -= run;
-            self.matter_lasts -= run;
+            self.foam_lasts -= run;
+            self.dye_lasts -= run;
         } else if moved {
             work.deposits = GpuDeposits::covers(settings.window, deposits);
         }
@@ -196,6 +200,7 @@ impl FieldProgress {
             pictures: [pictures.rings.as_ref()?.id(), pictures.matter.as_ref()?.id()],
             deposits: default(),
             ground: self.version,
+            is_dyed: false,
             ring_steps: 0,
             transport_steps: 0,
             generation: self.generation,
@@ -222,7 +227,7 @@ impl FieldProgress {
         MOST_STEPS
     }
 
-    /// Lets rings and matter last as long as what feeds them now will be seen.
+    /// Lets rings, foam and dye last as long as what feeds them now will be seen.
     fn keep_alive(&mut self, work: &FieldWork, settings: &Settings) {
         let (numbers, strokes) = (&work.numbers, &work.deposits.strokes);
         let raised = work.deposits.silhouettes.iter().any(|one| one.raise != 0.0);
@@ -234,10 +239,10 @@ impl FieldProgress {
             || !work.deposits.silhouettes.is_empty() && numbers.bodies > 0.0
             || strokes.iter().any(|stroke| stroke.foam != 0.0);
         if foamy {
-            self.matter_lasts = self.matter_lasts.max(LIVES * numbers.foam_life);
+            self.foam_lasts = LIVES * numbers.foam_life;
         }
         if strokes.iter().any(|stroke| stroke.dye != Vec3::ZERO) {
-            self.matter_lasts = self.matter_lasts.max(LIVES / numbers.dye_decay);
+            self.dye_lasts = LIVES / numbers.dye_decay;
         }
     }
 }

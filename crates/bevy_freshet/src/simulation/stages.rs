@@ -34,7 +34,8 @@ pub(super) struct Stages {
     pub carry_x: Stage,
     pub carry_z: Stage,
     pub rings: Stage,
-    pub transport: Stage,
+    /// For foam, and for foam and dye.
+    pub transport: [Stage; 2],
     pub compose: Stage,
 }
 
@@ -42,8 +43,12 @@ impl Stages {
     /// Whether every pipeline has been made.
     pub fn are_ready(&self, cache: &PipelineCache) -> bool {
         let before = [&self.ground, &self.bodies, &self.stream, &self.shift, &self.deposit];
-        let steps = [&self.carry_x, &self.carry_z, &self.rings, &self.transport, &self.compose];
-        before.iter().chain(&steps).all(|stage| cache.get_compute_pipeline(stage.pipeline).is_some())
+        let steps = [&self.carry_x, &self.carry_z, &self.rings, &self.compose];
+        before
+            .into_iter()
+            .chain(steps)
+            .chain(&self.transport)
+            .all(|stage| cache.get_compute_pipeline(stage.pipeline).is_some())
     }
 }
 
@@ -59,9 +64,13 @@ enum Bound {
 pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, cache: Res<PipelineCache>) {
     use Bound::{Picture, Read, Write};
     let water = water_layout();
-    let stage = |label, shader, entry, bound: &[Bound]| new_stage(&cache, label, shader, entry, bound, None);
+    let stage = |label, shader, entry, bound: &[Bound]| new_stage(&cache, label, shader, entry, bound, None, None);
     let on_water =
-        |label, shader, bound: &[Bound]| new_stage(&cache, label, shader, "main", bound, Some(water.clone()));
+        |label, shader, bound: &[Bound]| new_stage(&cache, label, shader, "main", bound, Some(water.clone()), None);
+    let transport = |define| {
+        let shader = load_embedded_asset!(&*assets, "transport.wgsl");
+        new_stage(&cache, "water_transport", shader, "main", &[Read, Read, Write], None, define)
+    };
     let carry = load_embedded_asset!(&*assets, "carry.wgsl");
     commands.insert_resource(Stages {
         ground: on_water("water_ground", load_embedded_asset!(&*assets, "ground.wgsl"), &[Write, Write]),
@@ -82,12 +91,7 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
         carry_x: stage("water_carry_x", carry.clone(), "along_x", &[Read, Read, Read, Write]),
         carry_z: stage("water_carry_z", carry, "along_z", &[Read, Read, Read, Write]),
         rings: stage("water_rings", load_embedded_asset!(&*assets, "rings.wgsl"), "main", &[Read, Read, Write]),
-        transport: stage(
-            "water_transport",
-            load_embedded_asset!(&*assets, "transport.wgsl"),
-            "main",
-            &[Read, Read, Write],
-        ),
+        transport: [None, Some("DYE")].map(transport),
         compose: stage(
             "water_compose",
             load_embedded_asset!(&*assets, "compose.wgsl"),
@@ -112,6 +116,7 @@ fn new_stage(
     entry: &'static str,
     bound: &[Bound],
     water: Option<BindGroupLayoutDescriptor>,
+    define: Option<&str>,
 ) -> Stage {
     let kinds = core::iter::once(uniform_buffer::<GpuNumbers>(false)).chain(bound.iter().copied().map(binding));
     let entries: Vec<_> = kinds.enumerate().map(|(n, entry)| entry.build(n as u32, ShaderStages::COMPUTE)).collect();
@@ -120,11 +125,14 @@ fn new_stage(
         label: Some(label.into()),
         layout: core::iter::once(layout.clone()).chain(water).collect(),
         shader,
-        shader_defs: vec![
+        shader_defs: [
             ShaderDefVal::UInt("GROUP".into(), TILE),
             ShaderDefVal::UInt("MATERIAL_BIND_GROUP".into(), 1),
             ShaderDefVal::UInt("MAX_WAVES".into(), WaterWaves::MAX as u32),
-        ],
+        ]
+        .into_iter()
+        .chain(define.map(ShaderDefVal::from))
+        .collect(),
         entry_point: Some(entry.into()),
         ..default()
     });

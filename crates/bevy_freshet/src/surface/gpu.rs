@@ -1,4 +1,5 @@
 //! The numbers of a surface as the shader reads them.
+use super::shape::SurfaceShape;
 use crate::body::WaterWaves;
 use bevy::{prelude::*, render::render_resource::ShaderType};
 
@@ -10,7 +11,7 @@ pub(crate) struct GpuSurface {
     pub world_origin: Vec2,
     pub half_size: Vec2,
     pub level: f32,
-    pub mesh_cell: f32,
+    pub mesh_cells: [f32; SurfaceShape::MOST_RINGS],
     pub mesh_center: Vec2,
     pub mesh_reach: f32,
     pub flags: u32,

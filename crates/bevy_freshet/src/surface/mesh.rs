@@ -7,32 +7,29 @@ use bevy::{
     prelude::*,
 };
 
-/// Rings around the finest part so that the mesh reaches at least `reach` metres from its centre.
-pub(super) fn rings_for(cell: f32, cells: u32, reach: f32) -> u32 {
-    let inner = cell * cells as f32 * 0.5;
-    ((reach / inner).max(1.0).log2().ceil() as u32).min(MAX_RINGS)
-}
-
-/// Enough for the largest water with the finest mesh.
-const MAX_RINGS: u32 = 32;
-
-/// A square of `cells` × `cells` with the spacing `cell` (m), surrounded by `rings` rings, each twice as large as what it
-/// surrounds with twice its spacing. Centred on the origin in the xz plane; `cells` must be a multiple of 4.
+/// A square of `cells` × `cells` with the spacing `cell` (m), surrounded by rings, each twice as large as what it surrounds
+/// with twice its spacing. For each of them, the square first, `coarser` is a power of two by which its cells are larger and fewer.
+/// Centred on the origin in the xz plane; the cells left must be a multiple of 4.
 ///
-/// Where a ring meets the next one, every other vertex of its rim is moved onto its neighbour: the finer side then has
+/// Where a ring meets a coarser one, the vertices of its rim are moved onto those of its neighbour: the finer side then has
 /// the very edges of the coarser one, and no crack can open.
-pub(super) fn nested_grid(cell: f32, cells: u32, rings: u32) -> Mesh {
-    debug_assert!(cells.is_multiple_of(4) && cells > 0, "rings must meet in whole cells");
-    let half = cells as i32 / 2;
+pub(super) fn nested_grid(cell: f32, cells: u32, coarser: &[u8]) -> Mesh {
     let mut builder = Builder::default();
-    for ring in 0..=rings {
+    for (ring, &power) in coarser.iter().enumerate() {
+        let across = cells >> power;
+        debug_assert!(across.is_multiple_of(4) && across > 0, "rings must meet in whole cells");
+        let half = across as i32 / 2;
+        let next = coarser.get(ring + 1);
+        // Cells of the next ring over those of this one.
+        let joint = next.map_or(1, |next| 2 << next >> power);
         let is_hole =
             |x: i32, z: i32| ring > 0 && (-half / 2..half / 2).contains(&x) && (-half / 2..half / 2).contains(&z);
+        let vertex = |corner| joined(corner, half, joint).as_i64vec2() << (ring as i64 + i64::from(power));
         for z in -half..half {
             for x in -half..half {
                 if !is_hole(x, z) {
                     let corners = [(x, z), (x, z + 1), (x + 1, z + 1), (x + 1, z)];
-                    builder.quad(corners.map(|corner| builder_vertex(corner, half, ring, ring < rings)));
+                    builder.quad(corners.map(vertex));
                 }
             }
         }
@@ -40,13 +37,12 @@ pub(super) fn nested_grid(cell: f32, cells: u32, rings: u32) -> Mesh {
     builder.mesh(cell)
 }
 
-/// Position of a ring's vertex in finest cells; on the rim, odd vertices fall onto the even one before.
-fn builder_vertex((x, z): (i32, i32), half: i32, ring: u32, joins_coarser: bool) -> I64Vec2 {
-    let even = |along: i32| along - along.rem_euclid(2);
-    let on_rim = |across: i32| joins_coarser && across.abs() == half;
-    let x_joined = if on_rim(z) { even(x) } else { x };
-    let z_joined = if on_rim(x) { even(z) } else { z };
-    ivec2(x_joined, z_joined).as_i64vec2() << i64::from(ring)
+/// A vertex of a ring that is `half` cells wide to each side; on the rim it falls onto the one before that the neighbour has,
+/// whose cells are `joint` times as large.
+fn joined((x, z): (i32, i32), half: i32, joint: i32) -> IVec2 {
+    let on_joint = |along: i32| along - along.rem_euclid(joint);
+    let on_rim = |across: i32| across.abs() == half;
+    ivec2(if on_rim(z) { on_joint(x) } else { x }, if on_rim(x) { on_joint(z) } else { z })
 }
 
 #[derive(Default)]
@@ -91,40 +87,51 @@ mod tests {
         mesh.triangles().unwrap().map(|triangle| triangle.vertices).collect()
     }
 
+    /// Rings of which some have fewer cells than others.
+    const COARSER: [&[u8]; 4] = [&[0, 0, 0, 0], &[0, 1, 1, 1], &[0, 2, 1, 0], &[1, 1, 2, 2]];
+
     #[test]
     fn rings_tile_the_square_without_gap_or_overlap() {
-        let mesh = nested_grid(0.5, 8, 3);
-        let area: f32 = triangles(&mesh).iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).y * 0.5).sum();
-        // 8 cells of 0.5 m, doubled three times: 32 m.
-        assert!((area - 32.0 * 32.0).abs() < 1e-2, "{area}");
-        assert!(triangles(&mesh).iter().all(|[a, b, c]| (*b - *a).cross(*c - *a).y > 0.0), "all face up");
+        for coarser in COARSER {
+            let mesh = nested_grid(0.5, 16, coarser);
+            let area: f32 = triangles(&mesh).iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).y * 0.5).sum();
+            // 16 cells of 0.5 m, doubled three times: 64 m.
+            assert!((area - 64.0 * 64.0).abs() < 1e-2, "{coarser:?}: {area}");
+            assert!(triangles(&mesh).iter().all(|[a, b, c]| (*b - *a).cross(*c - *a).y > 0.0), "all face up");
+        }
     }
 
     #[test]
     fn every_inner_edge_is_shared_by_two_triangles() {
-        let mesh = nested_grid(1.0, 8, 2);
-        let mut edges = HashMap::<(IVec2, IVec2), i32>::default();
-        for triangle in triangles(&mesh) {
-            for i in 0..3 {
-                let [a, b] = [triangle[i], triangle[(i + 1) % 3]].map(|p| p.xz().as_ivec2());
-                *edges.entry((a, b)).or_default() += 1;
-                *edges.entry((b, a)).or_default() -= 1;
+        for coarser in COARSER {
+            let mesh = nested_grid(1.0, 16, coarser);
+            let mut edges = HashMap::<(IVec2, IVec2), i32>::default();
+            for triangle in triangles(&mesh) {
+                for i in 0..3 {
+                    let [a, b] = [triangle[i], triangle[(i + 1) % 3]].map(|p| p.xz().as_ivec2());
+                    *edges.entry((a, b)).or_default() += 1;
+                    *edges.entry((b, a)).or_default() -= 1;
+                }
             }
-        }
-        let rim = 16;
-        for ((a, b), balance) in edges {
-            let outer = |p: IVec2| p.abs().max_element() == rim;
-            assert!(balance == 0 || outer(a) && outer(b), "crack between {a} and {b}");
+            let rim = 64;
+            for ((a, b), balance) in edges {
+                let outer = |p: IVec2| p.abs().max_element() == rim;
+                assert!(balance == 0 || outer(a) && outer(b), "{coarser:?}: crack between {a} and {b}");
+            }
         }
     }
 
     #[test]
-    fn rings_reach_as_far_as_asked() {
-        assert_eq!(rings_for(0.25, 64, 5.0), 0);
-        assert_eq!(rings_for(0.25, 64, 8.1), 1);
-        assert_eq!(rings_for(0.25, 64, 1000.0), 7);
-        // The finest mesh on the largest water: no overflow, no hole.
-        let mesh = nested_grid(0.005, 8, rings_for(0.005, 8, 2e6));
+    fn coarser_rings_have_fewer_triangles() {
+        let count = |coarser| triangles(&nested_grid(0.15, 64, coarser)).len();
+        // 2 · 64² in the middle, 2 · 64² · 3/4 in each ring, less what the rims save.
+        assert!((26_000..26_700).contains(&count(&[0; 4])), "{}", count(&[0; 4]));
+        assert!((9_300..9_800).contains(&count(&[0, 2, 3, 3])), "{}", count(&[0, 2, 3, 3]));
+    }
+
+    #[test]
+    fn the_finest_mesh_covers_the_largest_water() {
+        let mesh = nested_grid(0.005, 8, &[0; 30]);
         assert!(triangles(&mesh).iter().flatten().any(|p| p.x > 1e6));
     }
 }

@@ -11,6 +11,7 @@ mod ice_tile;
 mod material;
 mod mesh;
 mod ripples;
+mod shape;
 mod sync;
 mod tile;
 mod viewer;
@@ -45,6 +46,9 @@ pub struct WaterSurface {
     /// Cells across the finest part of the mesh, 8…256, rounded to a multiple of 4. Default 64. Each ring around it is
     /// twice as wide with cells twice as large.
     pub cells: u32,
+    /// How far off its place each wave may be drawn by cells that are larger and fewer than that, pixels, 0…4. Default
+    /// 0.25, which none can see. 0 keeps all cells of all rings.
+    pub mesh_error: f32,
     /// Root mean square slope of the fine ripples, 0…1. Default 0.045. 0 switches them off.
     pub ripples: f32,
     /// Size of the ripples' pattern, m, > 0. Default 4: ripples of 6 cm to 1 m.
@@ -63,6 +67,7 @@ impl Default for WaterSurface {
         Self {
             cell: 0.15,
             cells: 64,
+            mesh_error: 0.25,
             ripples: 0.045,
             ripple_size: 4.0,
             roughness: 0.002,
@@ -123,6 +128,7 @@ impl Plugin for SurfacePlugin {
         load_shader_library!(app, "foam.wgsl");
         load_shader_library!(app, "ice_growth.wgsl");
         load_shader_library!(app, "ice.wgsl");
+        load_shader_library!(app, "mesh.wgsl");
         load_shader_library!(app, "waves.wgsl");
         load_shader_library!(app, "detail.wgsl");
         load_shader_library!(app, "optics.wgsl");

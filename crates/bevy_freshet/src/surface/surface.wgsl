@@ -9,6 +9,7 @@
 #import freshet::surface::ground
 #import freshet::surface::ice
 #import freshet::surface::light
+#import freshet::surface::mesh
 #import freshet::surface::mirror
 #import freshet::surface::optics
 #import freshet::surface::refraction
@@ -37,12 +38,9 @@ struct Fragment {
 @vertex
 fn vertex(in: Vertex) -> Fragment {
     let rest = clamp(surface.mesh_center + in.position.xz, -surface.half_size, surface.half_size);
-    // The spacing of the mesh grows with the distance from its centre; this bound of it is continuous across rings.
-    let distance = max(abs(in.position.x), abs(in.position.z));
-    let spacing = surface.mesh_cell * max(1.0, distance / surface.mesh_reach * 2.0 - 1.0);
     let felt = ice::felt(rest);
     let fade = waves::shallow_fade(ground::still_depth(rest)) * felt.open;
-    let moved = waves::displacement(rest, fade, spacing);
+    let moved = waves::displacement(rest, fade, mesh::spacing_at(in.position.xz));
     let xz = surface.world_from_local * (rest + moved.xz) + surface.world_origin;
     let world = vec3(xz.x, surface.level - ice::drop(felt.thickness) + moved.y, xz.y);
     return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest);

@@ -6,7 +6,8 @@ use super::{
     gpu::GpuSurface,
     ice_tile::IceTile,
     material::SurfaceMaterial,
-    mesh::{nested_grid, rings_for},
+    mesh::nested_grid,
+    shape::{ShapeKey, SurfaceShape},
     viewer::Viewers,
 };
 use crate::{body::ResolvedWater, report::Reported};
@@ -14,7 +15,7 @@ use bevy::{
     asset::RenderAssetUsages,
     camera::{primitives::Aabb, visibility::RenderLayers},
     light::{NotShadowCaster, NotShadowReceiver},
-    platform::collections::{HashMap, HashSet},
+    platform::collections::HashSet,
     prelude::*,
     render::{
         render_resource::{Extent3d, TextureDimension, TextureFormat},
@@ -31,54 +32,23 @@ pub(crate) struct SurfaceOf {
     pub viewer: Entity,
 }
 
-/// Shape of a surface mesh.
-#[derive(Component, Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SurfaceShape {
-    /// Spacing of the finest part, m.
-    pub cell: f32,
-    /// Cells across the finest part.
-    pub cells: u32,
-    rings: u32,
-}
-
-impl SurfaceShape {
-    fn new(entity: Entity, settings: &WaterSurface, water: &ResolvedWater, reported: &mut Reported) -> Self {
-        let cell = reported.clamp(entity, "WaterSurface::cell", settings.cell, 0.005..=100.0, 0.15);
-        let cells = reported.clamp(entity, "WaterSurface::cells", settings.cells as f32, 8.0..=256.0, 64.0);
-        let cells = (cells as u32).next_multiple_of(4);
-        // From any place in the rectangle to its farthest corner, and a little more for the snapping of the centre.
-        let reach = 2.0 * water.half_size.length() + SNAP_CELLS * cell;
-        Self { cell, cells, rings: rings_for(cell, cells, reach) }
-    }
-
-    fn key(&self) -> (u32, u32, u32) {
-        (self.cell.to_bits(), self.cells, self.rings)
-    }
-
-    /// Where the mesh is centred for an eye at local `eye`: steps of whole cells, so that vertices of the inner rings
-    /// stay at the same places of the water while the camera moves.
-    pub fn center(&self, eye: Vec2, half_size: Vec2) -> Vec2 {
-        let step = self.cell * SNAP_CELLS;
-        (eye.clamp(-half_size, half_size) / step).round() * step
-    }
-}
-
-/// Step of the mesh centre, in finest cells.
-const SNAP_CELLS: f32 = 8.0;
-
 /// Assets that all surfaces share.
 #[derive(Resource)]
 pub(crate) struct SurfaceAssets {
     detail: Handle<Image>,
     foam: Handle<Image>,
-    meshes: HashMap<(u32, u32, u32), Handle<Mesh>>,
+    /// Those used last come last.
+    meshes: Vec<(ShapeKey, Handle<Mesh>)>,
 }
+
+/// Meshes kept though no surface uses them: a viewer that rises and sinks comes back to them.
+const SPARE_MESHES: usize = 6;
 
 impl FromWorld for SurfaceAssets {
     fn from_world(world: &mut World) -> Self {
         let mut images = world.resource_mut::<Assets<Image>>();
         let (detail, foam) = (images.add(detail_tile()), images.add(foam_tile()));
-        Self { detail, foam, meshes: HashMap::default() }
+        Self { detail, foam, meshes: Vec::new() }
     }
 }
 
@@ -86,9 +56,26 @@ impl FromWorld for SurfaceAssets {
 const NO_DATA_ELEVATION: f32 = 1e6;
 
 impl SurfaceAssets {
-    /// Drops meshes that no surface uses any more.
+    fn mesh(&mut self, shape: &SurfaceShape, meshes: &mut Assets<Mesh>) -> Mesh3d {
+        let key = shape.key();
+        let known = self.meshes.iter().position(|(other, _)| *other == key);
+        let make = || (key, meshes.add(nested_grid(shape.cell, shape.cells, &shape.coarser)));
+        let last = known.map(|at| self.meshes.remove(at)).unwrap_or_else(make);
+        let mesh = Mesh3d(last.1.clone());
+        self.meshes.push(last);
+        mesh
+    }
+
+    /// Drops meshes that no surface uses any more, but for the last few.
     fn collect(&mut self) {
-        self.meshes.retain(|_, mesh| matches!(mesh, Handle::Strong(shared) if Arc::strong_count(shared) > 1));
+        let is_used = |mesh: &Handle<Mesh>| matches!(mesh, Handle::Strong(shared) if Arc::strong_count(shared) > 1);
+        let unused = self.meshes.iter().filter(|(_, mesh)| !is_used(mesh)).count();
+        let mut surplus = unused.saturating_sub(SPARE_MESHES);
+        self.meshes.retain(|(_, mesh)| {
+            let keep = is_used(mesh) || surplus == 0;
+            surplus -= usize::from(!keep);
+            keep
+        });
     }
 }
 
@@ -185,35 +172,37 @@ pub(crate) fn sync_surfaces(
         .iter()
         .flat_map(|viewer| waters.iter().map(move |water| SurfaceOf { water: water.0, viewer: viewer.entity }))
         .collect();
-    let mut mesh_of = |shape: &SurfaceShape, assets: &mut SurfaceAssets| {
-        let make = || meshes.add(nested_grid(shape.cell, shape.cells, shape.rings));
-        Mesh3d(assets.meshes.entry(shape.key()).or_insert_with(make).clone())
-    };
     for (entity, surface, mut shape) in &mut surfaces {
         let water = waters.get(surface.water).ok().filter(|_| missing.remove(surface));
-        let Some((water, settings, resolved, visibility, layers)) = water else {
+        let (Some((water, settings, resolved, visibility, layers)), Some(viewer)) =
+            (water, viewers.get(surface.viewer))
+        else {
             commands.entity(entity).try_despawn();
             continue;
         };
-        let wanted = SurfaceShape::new(water, settings, resolved, &mut reported);
+        let wanted = SurfaceShape::new(water, settings, resolved, &viewer, &mut reported);
         if *shape != wanted {
+            commands.entity(entity).try_insert(assets.mesh(&wanted, &mut meshes));
             *shape = wanted;
-            commands.entity(entity).try_insert(mesh_of(&wanted, &mut assets));
         }
         let shown = visibility.get() && resolved.half_size != Vec2::ZERO;
         let visible = if shown { Visibility::Visible } else { Visibility::Hidden };
         commands.entity(entity).try_insert((visible, place(resolved), layers.cloned().unwrap_or_default()));
     }
     for surface in missing {
-        let Ok((water, settings, resolved, ..)) = waters.get(surface.water) else { continue };
-        let shape = SurfaceShape::new(water, settings, resolved, &mut reported);
+        let (Ok((water, settings, resolved, ..)), Some(viewer)) =
+            (waters.get(surface.water), viewers.get(surface.viewer))
+        else {
+            continue;
+        };
+        let shape = SurfaceShape::new(water, settings, resolved, &viewer, &mut reported);
         let mut buffer = ShaderBuffer::from(GpuSurface::default());
         buffer.buffer_description.label = Some("water_surface");
         commands.spawn((
             Name::new("Water surface"),
             surface,
+            assets.mesh(&shape, &mut meshes),
             shape,
-            mesh_of(&shape, &mut assets),
             MeshMaterial3d(materials.add(SurfaceMaterial {
                 surface: buffers.add(buffer),
                 mirror: None,

@@ -1,13 +1,16 @@
 // What the surface of one water needs to know in one view. The Rust twin is `GpuSurface` in `gpu.rs`.
 #define_import_path freshet::surface::types
 
+// Most rings of the mesh.
+const RINGS: u32 = 32u;
+
 struct Surface {
     // World xz from local xz: turn, then shift.
     world_from_local: mat2x2<f32>,
     world_origin: vec2<f32>,        // units: m
     half_size: vec2<f32>,           // units: m
     level: f32,                     // world height of the still surface, units: m
-    mesh_cell: f32,                 // finest spacing of the mesh, units: m
+    mesh_cells: array<f32, RINGS>,  // size of the cells of each ring of the mesh, units: m
     mesh_center: vec2<f32>,         // local xz, units: m
     mesh_reach: f32,                // half width of the finest part of the mesh, units: m
     flags: u32,

@@ -53,6 +53,13 @@ pub(crate) struct ViewerData<'a> {
 }
 
 impl ViewerData<'_> {
+    /// Height of what a pixel in the middle of the picture shows, m, of things `distance` metres away.
+    pub fn pixel_size(&self, distance: f32) -> f32 {
+        let clip_from_view = self.projection.get_clip_from_view();
+        let w = clip_from_view.w_axis.w + clip_from_view.z_axis.w.abs() * distance;
+        2.0 * w / (clip_from_view.y_axis.y * self.viewport.y as f32)
+    }
+
     /// Gives `mirror` the fog, light and shadows of this camera.
     pub fn insert_lighting(&self, mirror: &mut EntityCommands) {
         fn copy<C: Component + Clone>(from: Option<&C>, to: &mut EntityCommands) {

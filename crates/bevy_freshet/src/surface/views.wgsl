@@ -3,6 +3,7 @@
 
 #import freshet::surface::bindings::surface
 #import freshet::surface::ground
+#import freshet::surface::mesh
 #import freshet::surface::types
 
 // Speed at which the colour of the current is brightest, m/s.
@@ -69,9 +70,7 @@ fn depth(still_depth: f32) -> vec3<f32> {
 // diagonals towards +x +z. Where cells are too small to be told apart the lines fade.
 fn wire(place: vec2<f32>, pixel_size: f32) -> f32 {
     let from_center = place - surface.mesh_center;
-    let distance = max(abs(from_center.x), abs(from_center.y));
-    let ring = max(ceil(log2(max(distance / surface.mesh_reach, 1e-6))), 0.0);
-    let cell = surface.mesh_cell * exp2(ring);
+    let cell = mesh::cell_at(from_center);
     let p = fract(from_center / cell);
     let to_grid = min(min(p.x, 1.0 - p.x), min(p.y, 1.0 - p.y));
     // The diagonal runs from the corner of the least x and z to that of the greatest.

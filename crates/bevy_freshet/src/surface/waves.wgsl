@@ -26,8 +26,11 @@ fn displacement(rest: vec2<f32>, fade: f32, spacing: f32) -> vec3<f32> {
     for (var i = 0u; i < surface.wave_count; i++) {
         let wave = surface.waves[i];
         let wavenumber = length(wave.xy);
-        let theta = dot(wave.xy, rest) + wave.w;
         let amplitude = wave.z * resolved(wavenumber, spacing);
+        if amplitude <= 0.0 {
+            continue;
+        }
+        let theta = dot(wave.xy, rest) + wave.w;
         let horizontal = wave.xy / wavenumber * (-amplitude * sin(theta));
         sum += vec3(horizontal.x, amplitude * cos(theta), horizontal.y);
     }
@@ -50,13 +53,16 @@ fn slope(rest: vec2<f32>, fade: f32, spacing: f32) -> Slope {
         let wave = surface.waves[i];
         let k = wave.xy;
         let wavenumber = length(k);
-        let theta = dot(k, rest) + wave.w;
         let share = resolved(wavenumber, spacing);
         let amplitude = fade * wave.z;
-        s -= k * (amplitude * share * sin(theta));
-        j -= vec3(k.x * k.x, k.x * k.y, k.y * k.y) * (amplitude * share * cos(theta) / wavenumber);
         let steepness = amplitude * wavenumber;
         variance += 0.5 * steepness * steepness * (1.0 - share * share);
+        if share <= 0.0 {
+            continue;
+        }
+        let theta = dot(k, rest) + wave.w;
+        s -= k * (amplitude * share * sin(theta));
+        j -= vec3(k.x * k.x, k.x * k.y, k.y * k.y) * (amplitude * share * cos(theta) / wavenumber);
     }
     // The determinant stays above zero while the steepnesses sum to less than one.
     let determinant = max(j.x * j.z - j.y * j.y, 0.05);

@@ -5,7 +5,8 @@ use super::{
     ice::write_ice,
     material::SurfaceMaterial,
     ripples::Ripples,
-    sync::{GroundTextures, SurfaceOf, SurfaceShape},
+    shape::SurfaceShape,
+    sync::{GroundTextures, SurfaceOf},
     viewer::{ViewerData, Viewers},
 };
 use crate::{
@@ -116,8 +117,8 @@ fn write_frame(gpu: &mut GpuSurface, water: &ResolvedWater, shape: &SurfaceShape
     write_water(gpu, water);
     let eye = water.local_from_world.transform_point2(viewer.pose.translation().xz());
     gpu.mesh_center = shape.center(eye, water.half_size);
-    gpu.mesh_cell = shape.cell;
-    gpu.mesh_reach = shape.cell * shape.cells as f32 * 0.5;
+    gpu.mesh_cells = shape.spacings();
+    gpu.mesh_reach = shape.reach();
 }
 
 /// Frame and waves of the water, whoever looks at it.
