@@ -117,4 +117,33 @@ mod tests {
         assert!(wall_distance(vec2(1.0, 1.5), 3, &centers) < 1e-6);
         assert!((wall_distance(vec2(1.5, 1.5), 3, &centers) - 1.0).abs() < 1e-6);
     }
+
+    /// The inverse of the deviation of a mean of four values `step` tiles apart.
+    fn widened(variates: &[f32], step: Vec2) -> f32 {
+        let texel = |along: f32| (along * SIZE as f32).round().rem_euclid(SIZE as f32) as usize % SIZE;
+        let at = |place: Vec2| variates[texel(place.y) * SIZE + texel(place.x)];
+        let mean = |place: Vec2| (0..4).map(|n| at(place + step * (n as f32 - 1.5))).sum::<f32>() / 4.0;
+        let places = (0..64 * 64).map(|i| vec2((i % 64) as f32, (i / 64) as f32) / 64.0);
+        (places.map(|place| mean(place).powi(2)).sum::<f32>() / (64.0 * 64.0)).sqrt().recip()
+    }
+
+    #[test]
+    fn samples_in_a_row_deviate_as_the_shader_takes_them_to() {
+        let smoothstep = |t: f32| t * t * (3.0 - 2.0 * t);
+        let wgsl = include_str!("foam.wgsl");
+        assert!(wgsl.contains("(1.0 + min(length(streak) / 0.056, 1.0))"));
+        let bubbles = |length: f32| 1.0 + (length / 0.056).min(1.0);
+        assert!(wgsl.contains("(1.0 + 1.25 * smoothstep(0.0, 0.16, length(band)))"));
+        let patches = |length: f32| 1.0 + 1.25 * smoothstep((length / 0.16).min(1.0));
+        for (variates, assumed) in
+            [(normal(&froth()), &bubbles as &dyn Fn(f32) -> f32), (normal(&super::patches()), &patches)]
+        {
+            for length in [0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.16, 0.2, 0.22] {
+                let turns = (0..8).map(|turn| Vec2::from_angle(turn as f32 * 0.8) * length);
+                let measured = turns.map(|step| widened(&variates, step)).sum::<f32>() / 8.0;
+                let error = assumed(length) / measured - 1.0;
+                assert!(error.abs() < 0.1, "{length}: {measured}, assumed {}", assumed(length));
+            }
+        }
+    }
 }

@@ -5,8 +5,9 @@
 #import freshet::surface::flow::{Drift, Footprint}
 #import freshet::surface::types
 
-// Time over which the current draws foam out to streaks, s.
+// Time over which the current draws bubbles out to streaks, and patches to bands, s.
 const STREAK: f32 = 0.22;
+const BAND: f32 = 4.5;
 // Deviation of the variate over which foam turns from none to closed at a wall of bubbles.
 const SOFTNESS: f32 = 0.35;
 
@@ -19,24 +20,34 @@ fn texel(at: vec2<f32>, footprint: Footprint) -> vec4<f32> {
     return textureSampleGrad(foam, detail_sampler, at, footprint.x, footprint.y);
 }
 
-// The variate of the foam tile and what a pixel hides of its variance, at `place` (local xz, m) and drawn out along
-// `streak` (m).
-fn froth(place: vec2<f32>, streak: vec2<f32>, footprint: Footprint) -> vec2<f32> {
+// Both variates of the tile, each with what a pixel hides of its variance, as means of four samples `step` apart.
+fn drawn_out(middle: vec2<f32>, step: vec2<f32>, footprint: Footprint) -> vec4<f32> {
+    var sum = vec4(0.0);
+    for (var i = 0; i < 4; i++) {
+        let here = texel(middle + step * (f32(i) - 1.5), footprint);
+        sum += vec4(here.x, max(here.y - here.x * here.x, 0.0), here.z, max(here.w - here.z * here.z, 0.0));
+    }
+    return 0.25 * sum;
+}
+
+// The variate of foam and what a pixel hides of its variance, at `place` (local xz, m) on a `current` (m/s).
+fn froth(place: vec2<f32>, current: vec2<f32>, footprint: Footprint) -> vec2<f32> {
     let scale = surface.foam_scale;
     let within = Footprint(footprint.x * scale, footprint.y * scale);
-    let middle = place * scale - surface.foam_drift.xy;
-    var mean = 0.0;
-    var hidden = 0.0;
-    for (var i = 0; i < 4; i++) {
-        let bubbles = texel(middle + streak * (scale * (f32(i) - 1.5)), within).xy;
-        mean += 0.25 * bubbles.x;
-        hidden += 0.25 * max(bubbles.y - bubbles.x * bubbles.x, 0.0);
-    }
-    // Four samples that know nothing of each other have half the deviation of one.
-    mean *= 1.0 + smoothstep(0.0, 0.08, length(streak) * scale);
-    let patches = texel(PATCH * place * scale - surface.foam_drift.zw, Footprint(PATCH * within.x, PATCH * within.y)).zw;
-    hidden = mix(hidden, max(patches.y - patches.x * patches.x, 0.0), PATCHES);
-    return vec2(sqrt(1.0 - PATCHES) * mean + sqrt(PATCHES) * patches.x, hidden);
+    let streak = current * (scale * STREAK / 3.0);
+    var band = PATCH * current * (scale * BAND / 3.0);
+    band *= min(1.0, 0.22 / max(length(band), 1e-6));
+    let bubbles = drawn_out(place * scale - surface.foam_drift.xy, streak, within).xy;
+    let turned = Footprint(PATCH * within.x, PATCH * within.y);
+    let patches = drawn_out(PATCH * place * scale - surface.foam_drift.zw, band, turned).zw;
+    // The mean of four samples deviates less the less they know of each other: half as much at last, and patches, which are
+    // waves, less still. `foam.rs` measures it.
+    let bubble = bubbles.x * (1.0 + min(length(streak) / 0.056, 1.0));
+    let gathered = patches.x * (1.0 + 1.25 * smoothstep(0.0, 0.16, length(band)));
+    return vec2(
+        sqrt(1.0 - PATCHES) * bubble + sqrt(PATCHES) * gathered,
+        mix(bubbles.y, patches.y, PATCHES),
+    );
 }
 
 // Φ of the normal distribution (Page 1977).
@@ -57,10 +68,10 @@ fn cover(drift: Drift, density: f32, footprint: Footprint) -> f32 {
     if share * surface.foam_amount < 0.004 {
         return 0.0;
     }
-    let streak = drift.current * (STREAK / 3.0);
-    var variate = froth(drift.first, streak, footprint);
+    let current = surface.current_scale * drift.current + surface.current_drift;
+    var variate = froth(drift.first, current, footprint);
     if (surface.flags & types::FLAG_FLOW) != 0u {
-        let second = froth(drift.second, streak, footprint);
+        let second = froth(drift.second, current, footprint);
         let weight = drift.weight;
         variate = vec2(dot(vec2(variate.x, second.x), weight), dot(vec2(variate.y, second.y), weight * weight));
     }

@@ -74,7 +74,6 @@ struct Surface {
     sharpness: f32,
     shininess: f32,
 
-    // For SurfaceView.
     current_drift: vec2<f32>,       // uniform part of the current, local xz, units: m/s
     current_scale: f32,             // factor on the flow map
 
