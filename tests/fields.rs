@@ -77,6 +77,21 @@ fn the_shore_foams_and_the_deep_does_not() {
 }
 
 #[test]
+fn no_foam_is_born_under_ice() {
+    let mut stage = Stage::new();
+    lay(&mut stage, |p| -0.1 * (p.x + 12.0));
+    let sources = WaterFoam { shore: 0.5, shore_depth: 0.3, ..none() };
+    // The shore is frozen, and the middle not yet.
+    let (water, camera) = foamy(&mut stage, sources, WaterIce::frozen(0.4));
+    stage.settle();
+    stage.run(0.5);
+    assert_eq!(total(&foam(&stage.picture(camera))), 0.0);
+    stage.app.world_mut().entity_mut(water).remove::<WaterIce>();
+    stage.run(0.5);
+    assert!(total(&foam(&stage.picture(camera))) > 10.0, "there is foam without ice");
+}
+
+#[test]
 fn waves_that_run_up_make_more_foam_at_the_shore() {
     let shore = |waves: WaterWaves| {
         let mut stage = Stage::new();

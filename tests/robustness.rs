@@ -63,6 +63,37 @@ fn the_picture_has_no_pixel_that_is_not_a_number() {
     }
 }
 
+/// Whether there is water to be asked where the camera looks.
+fn is_wet(stage: &mut Stage) -> bool {
+    use bevy::ecs::system::RunSystemOnce;
+    stage.app.world_mut().run_system_once(|water: WaterQuery| water.sample(Vec3::ZERO).is_some()).unwrap()
+}
+
+#[test]
+fn water_that_loses_a_component_is_left_out_until_it_has_it_again() {
+    let (mut stage, camera) = river_stage();
+    let world = stage.app.world_mut();
+    let water = world.query_filtered::<Entity, With<Water>>().single(world).unwrap();
+    world.entity_mut(water).insert(Visibility::Hidden);
+    let without = stage.picture(camera).bits();
+    stage.app.world_mut().entity_mut(water).insert(Visibility::Inherited);
+    let with = stage.picture(camera).bits();
+    assert!(with != without);
+    let mut check = |remove: fn(&mut EntityWorldMut), restore: fn(&mut EntityWorldMut), is_water: bool| {
+        // In the very frame in which something is to be simulated.
+        stage.app.world_mut().write_message(Disturb::push(Vec3::ZERO, 0.5, 0.1));
+        remove(&mut stage.app.world_mut().entity_mut(water));
+        stage.run(0.2);
+        assert_eq!(is_wet(&mut stage), is_water);
+        assert!(stage.picture(camera).bits() == without, "it is not drawn");
+        restore(&mut stage.app.world_mut().entity_mut(water));
+        assert!(stage.picture(camera).bits() != without, "it is drawn again");
+    };
+    check(|water| _ = water.remove::<WaterFoam>(), |water| _ = water.insert(WaterFoam::default()), true);
+    check(|water| _ = water.remove::<WaterOptics>(), |water| _ = water.insert(WaterOptics::RIVER), true);
+    check(|water| _ = water.remove::<Water>(), |water| _ = water.insert(Water::new(Vec2::splat(30.0))), false);
+}
+
 #[test]
 fn no_two_systems_race() {
     use bevy::ecs::schedule::{LogLevel, ScheduleBuildSettings};

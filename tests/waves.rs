@@ -1,5 +1,5 @@
 //! What is drawn is what is felt.
-use crate::stage::{Picture, SIZE, Stage, still_water};
+use crate::stage::{SIZE, Stage, still_water};
 use bevy::{ecs::system::RunSystemOnce, prelude::*};
 use bevy_freshet::prelude::*;
 
@@ -119,25 +119,51 @@ fn a_crest_travels_with_the_phase_speed() {
     assert!((moved - speed * 0.5).abs() < 0.01 * speed * 0.5, "moved {moved} m, expected {}", speed * 0.5);
 }
 
-#[test]
-fn a_mesh_with_only_the_cells_that_a_viewer_needs_looks_like_a_full_one() {
+/// Heights over the still surface that `scene` draws with a mesh error of 0 and with the usual one, and pixels per metre.
+fn heights_by_mesh(scene: impl FnOnce(&mut Stage, WaterSurface) -> Entity) -> ([Vec<f32>; 2], f32) {
+    const VIEW: f32 = 30.0;
     let mut stage = Stage::new();
-    let (water, _, surface, optics) = still_water(Vec2::splat(200.0));
-    let surface = WaterSurface { view: SurfaceView::Normal, ..surface };
-    let water = stage.spawn((water, sea(), surface, optics));
-    let pose = Transform::from_xyz(0.0, 3.0, 0.0).looking_to(vec3(0.3, -0.15, -1.0), Vec3::Y);
-    let camera = stage.camera(PerspectiveProjection::default(), pose);
-    let mut picture = |mesh_error| {
+    let (.., surface, _) = still_water(Vec2::ONE);
+    let water = scene(&mut stage, WaterSurface { view: SurfaceView::Height, ..surface });
+    let camera = stage.camera_above(Vec3::ZERO, VIEW);
+    let pictures = [0.0, WaterSurface::default().mesh_error].map(|mesh_error| {
         stage.app.world_mut().get_mut::<WaterSurface>(water).unwrap().mesh_error = mesh_error;
-        stage.picture(camera)
-    };
-    let [full, usual, flat] = [0.0, WaterSurface::default().mesh_error, 4.0].map(&mut picture);
-    // Root mean square difference of the normals.
-    let difference = |one: &Picture, other: &Picture| {
-        let squares = one.pixels().zip(other.pixels()).map(|((_, one), (_, other))| one.distance_squared(other));
-        (squares.sum::<f32>() / (SIZE.x * SIZE.y) as f32).sqrt()
-    };
-    let (usual, flat) = (difference(&full, &usual), difference(&full, &flat));
-    assert!(usual < 0.003, "usual {usual}");
-    assert!(flat > 3.0 * usual, "usual {usual}, four pixels off {flat}");
+        let picture = stage.picture(camera);
+        picture.pixels().map(|(_, split)| split.x + split.y / 64.0).collect()
+    });
+    (pictures, SIZE.x as f32 / VIEW)
+}
+
+#[test]
+fn a_mesh_of_no_more_cells_than_a_viewer_needs_is_off_by_no_more_than_it_may() {
+    let waves = WaterWaves { fade_depth: 0.0, ..WaterWaves::wind(14.0, 8000.0, vec2(1.0, 0.4)) };
+    let ([full, coarse], pixels_per_metre) = heights_by_mesh(|stage, surface| {
+        let (water, _, _, optics) = still_water(Vec2::splat(60.0));
+        stage.spawn((water, waves.clone(), surface, optics))
+    });
+    // Each train may be off by that much.
+    let most = waves.trains.len() as f32 * WaterSurface::default().mesh_error / pixels_per_metre;
+    let errors = full.iter().zip(&coarse).map(|(full, coarse)| (full - coarse).abs());
+    let error = errors.fold(0.0, f32::max);
+    let highest = full.iter().copied().fold(0.0, f32::max);
+    assert!(highest > 1.5 * most, "there are waves to see: {highest} m");
+    assert!(error < most, "{error} m off, where {most} m may be");
+    assert!(error > 0.01 * most, "the mesh is a coarser one: {error} m off");
+}
+
+#[test]
+fn a_coarser_mesh_shows_where_waves_end_at_a_quay() {
+    // A swell that a few samples would carry, before a wall: beyond it the water is too shallow for waves.
+    let swell = bevy_freshet::body::Wave { direction: Vec2::X, wavelength: 40.0, steepness: 0.08, phase: 0.0 };
+    let waves = WaterWaves { trains: vec![swell], fade_depth: 1.0, ..WaterWaves::still() };
+    let ([full, coarse], _) = heights_by_mesh(|stage, surface| {
+        stage.spawn(WaterBed::from_fn(uvec2(80, 80), 0.5, |p| if p.x > 3.0 { -0.05 } else { -6.0 }).unwrap());
+        let (water, _, _, optics) = still_water(Vec2::splat(38.0));
+        stage.spawn((water, waves.clone(), surface, optics))
+    });
+    let highest = full.iter().copied().fold(0.0, f32::max);
+    let errors = full.iter().zip(&coarse).map(|(full, coarse)| (full - coarse).abs());
+    let off = errors.filter(|error| *error > 0.1 * highest).count() as f32 / full.len() as f32;
+    // The wall itself, half a metre wide, may be drawn by other triangles.
+    assert!(off < 0.5 / 30.0, "{off} of the picture is off by a tenth of the {highest} m");
 }

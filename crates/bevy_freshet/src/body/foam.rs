@@ -8,7 +8,7 @@ use bevy::prelude::*;
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, Debug)]
 pub struct WaterFoam {
-    /// Factor on the drawn cover, 0…1. Default 1; 0 draws none.
+    /// Factor on the drawn cover, 0…1. Default 1; 0 draws none and lets what is there rest.
     pub amount: f32,
     /// Time in which foam decays to 1/e, s, 0.1…1000. Default 8.
     pub life: f32,

@@ -25,6 +25,11 @@ impl ResolvedIce {
         self.winter.thickness(self.order.sample(place))
     }
 
+    /// Whether ice covers the whole water.
+    pub fn is_closed(&self) -> bool {
+        freshet_hydro::ice::cover(self.winter.thickness(1.0)) >= 1.0
+    }
+
     /// The most that the surface can sink, m.
     pub fn deepest_drop(&self) -> f32 {
         self.level_drop * self.winter.thickness(0.0)

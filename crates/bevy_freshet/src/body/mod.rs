@@ -24,7 +24,7 @@ use crate::{
     reflection::WaterReflection,
     report::{Reported, forget_despawned},
     schedule::WaterSystems,
-    simulation::{Deposits, FieldPictures, FieldWindow},
+    simulation::{Deposits, FieldFrame, FieldPictures, FieldProgress, FieldWindow},
     surface::WaterSurface,
 };
 use bevy::{app::RunFixedMainLoopSystems, ecs::message::MessageUpdateSystems, prelude::*};
@@ -73,12 +73,20 @@ impl Default for Water {
     }
 }
 
+/// Without [`Water`] nothing of what is derived from it is left, whatever components stay.
+fn end_water(removed: On<Remove, Water>, mut commands: Commands) {
+    let Ok(mut water) = commands.get_entity(removed.entity) else { return };
+    water.try_remove::<(ResolvedWater, FieldWindow, FieldPictures, FieldProgress, Deposits)>();
+    water.try_insert(FieldFrame::Off);
+}
+
 /// Registers the components of a water and resolves them for every clock.
 pub(crate) struct BodyPlugin;
 
 impl Plugin for BodyPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Reported>()
+            .add_observer(end_water)
             .add_systems(First, forget_despawned.after(MessageUpdateSystems))
             .add_systems(FixedFirst, resolved::resolve_waters.in_set(WaterSystems::Resolve))
             .add_systems(

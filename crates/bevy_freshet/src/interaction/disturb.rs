@@ -3,14 +3,10 @@ use crate::{
     body::ResolvedWater,
     query::WaterQuery,
     report::Reported,
-    simulation::{Deposits, FieldWindow, Stroke},
+    simulation::{Deposits, FieldWindow, NARROWEST, REACH, Stroke},
 };
 use bevy::prelude::*;
 use core::f32::consts::TAU;
-
-/// Narrowest stroke, in cells. A Gaussian of this standard deviation keeps its volume within 0.02 % when it is sampled at
-/// cell centres: the error is `2 exp(−2 π² σ²)` (Poisson summation).
-const NARROWEST: f32 = 0.7;
 
 /// Disturbs the water at a place, once: a message for a stone that falls in, a splash, a blot of dye.
 ///
@@ -32,7 +28,7 @@ pub struct Disturb {
     pub water: Option<Entity>,
     /// Where, in the world, m. Its height only tells waters above one another apart.
     pub place: Vec3,
-    /// Radius (standard deviation), m, 0.001…1000. Not narrower than 0.7 cells of the water's
+    /// Radius (standard deviation), m, 0.001…1000. Not narrower than ¾ of a cell of the water's
     /// [`WaterInteraction::cell`](crate::body::WaterInteraction::cell) in effect.
     pub radius: f32,
     /// Volume by which the surface is raised, m³, −10⁶…10⁶; negative presses it down.
@@ -96,8 +92,7 @@ pub(super) fn deposit(window: &FieldWindow, deposits: &mut Deposits, stroke: Str
         return;
     }
     let stroke = Stroke { radius: stroke.radius.max(NARROWEST * window.cell), ..stroke };
-    // Beyond four standard deviations there is nothing left.
-    let (first, reach) = (window.origin(), 4.0 * stroke.radius);
+    let (first, reach) = (window.origin(), REACH * stroke.radius);
     let last = first + window.extent();
     if stroke.place.cmpge(first - reach).all() && stroke.place.cmple(last + reach).all() {
         deposits.strokes.push(stroke);

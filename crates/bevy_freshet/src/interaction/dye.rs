@@ -7,7 +7,7 @@ use crate::{
     body::ResolvedWater,
     query::WaterQuery,
     report::Reported,
-    simulation::{Deposits, FieldWindow, Stroke},
+    simulation::{Deposits, FieldProgress, FieldWindow, Stroke},
 };
 use bevy::prelude::*;
 
@@ -52,18 +52,23 @@ pub fn absorption_from_color(color: impl Into<Color>, distance: f32) -> Vec3 {
 /// Leaks for as long as the frame was.
 pub(super) fn leak(
     time: Res<Time>,
-    sources: Query<(Entity, &DyesWater, &GlobalTransform, &BodyMotion)>,
+    sources: Query<(Entity, &DyesWater, &GlobalTransform, &BodyMotion, Has<DisturbsWater>)>,
     query: WaterQuery,
-    mut waters: Query<(&ResolvedWater, &FieldWindow, &mut Deposits)>,
+    mut waters: Query<(&ResolvedWater, &FieldWindow, &FieldProgress, &mut Deposits)>,
     mut reported: ResMut<Reported>,
 ) {
-    for (entity, source, pose, motion) in &sources {
+    for (entity, source, pose, motion, is_cut) in &sources {
+        // Without silhouettes there is no section, but for an old one.
+        let section = motion.section.filter(|_| is_cut);
         let origin = pose.translation();
         let around = origin.is_finite().then(|| query.sample(origin)).flatten();
         let drowned = around.filter(|around| around.height >= origin.y).map(|around| around.water);
-        let Some(water) = drowned.or(motion.section.map(|(water, _)| water)) else { continue };
-        let Ok((resolved, window, mut deposits)) = waters.get_mut(water) else { continue };
-        let place = match (drowned, motion.section) {
+        let Some(water) = drowned.or(section.map(|(water, _)| water)) else { continue };
+        let Ok((resolved, window, progress, mut deposits)) = waters.get_mut(water) else { continue };
+        if !progress.runs() {
+            continue;
+        }
+        let place = match (drowned, section) {
             (None, Some((_, centroid))) => centroid,
             _ => resolved.local_from_world.transform_point2(origin.xz()),
         };

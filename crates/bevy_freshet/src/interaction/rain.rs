@@ -3,7 +3,7 @@ use super::disturb::deposit;
 use crate::{
     body::{ResolvedWater, WaterInteraction},
     report::Reported,
-    simulation::{Deposits, FieldWindow, Stroke},
+    simulation::{Deposits, FieldProgress, FieldWindow, Stroke},
 };
 use bevy::prelude::*;
 use fastrand::Rng;
@@ -20,12 +20,14 @@ const MOST_DROPS: f32 = 256.0;
 /// energy goes with the square of the volume, so the energy of the waves is that of all drops.
 pub(super) fn fall(
     time: Res<Time>,
-    mut waters: Query<(Entity, &WaterInteraction, &ResolvedWater, &FieldWindow, &mut Deposits)>,
+    mut waters: Query<(Entity, &WaterInteraction, &ResolvedWater, &FieldWindow, &FieldProgress, &mut Deposits)>,
     mut reported: ResMut<Reported>,
 ) {
-    for (entity, interaction, water, window, mut deposits) in &mut waters {
+    for (entity, interaction, water, window, progress, mut deposits) in &mut waters {
         let rate = reported.clamp(entity, "WaterInteraction::rain", interaction.rain, 0.0..=500.0, 0.0);
-        let Some(rain) = Rain::of_rate(rate).filter(|_| window.size.min_element() > 0) else { continue };
+        let Some(rain) = Rain::of_rate(rate).filter(|_| window.size.min_element() > 0 && progress.runs()) else {
+            continue;
+        };
         let drops = rain.drops * window.extent().element_product() * time.delta_secs();
         let strokes = drops.min(MOST_DROPS);
         let volume = rain.crater_volume * (drops / strokes).sqrt();

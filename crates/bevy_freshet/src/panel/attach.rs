@@ -20,6 +20,19 @@ pub(super) fn attach_to_window(
     }
 }
 
+/// The camera whose settings the panel shows: its own, or, if that draws an overlay, the 3D camera of a window that is drawn
+/// last.
+pub(super) fn scene_camera(world: &mut World, own: Entity) -> Entity {
+    if world.get::<Camera3d>(own).is_some() {
+        return own;
+    }
+    let mut cameras =
+        world.query_filtered::<(Entity, &Camera, &RenderTarget), (With<Camera3d>, Without<MirrorCamera>)>();
+    let windows =
+        cameras.iter(world).filter(|(_, camera, target)| camera.is_active && matches!(target, RenderTarget::Window(_)));
+    windows.max_by_key(|(entity, camera, _)| (camera.order, *entity)).map_or(own, |(camera, ..)| camera)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -47,5 +60,15 @@ mod tests {
         assert_eq!(context(&mut app), [scene]);
         app.world_mut().despawn(scene);
         assert_eq!(context(&mut app), [overlay]);
+    }
+
+    #[test]
+    fn under_an_overlay_the_panel_is_about_the_scene() {
+        let mut world = World::new();
+        let overlay = world.spawn((Camera { order: 2, ..default() }, RenderTarget::default())).id();
+        assert_eq!(scene_camera(&mut world, overlay), overlay);
+        let scene = world.spawn((Camera3d::default(), Camera::default(), RenderTarget::default())).id();
+        assert_eq!(scene_camera(&mut world, overlay), scene);
+        assert_eq!(scene_camera(&mut world, scene), scene);
     }
 }

@@ -1,7 +1,7 @@
 //! The window of the panel.
 use super::{
-    DropRequested, OrbitCamera, RestartRequested, WaterPanel, actions, group, group::Owner, groups::GROUPS, presets,
-    waves,
+    DropRequested, OrbitCamera, RestartRequested, WaterPanel, actions, attach::scene_camera, group, group::Owner,
+    groups::GROUPS, presets, waves,
 };
 use crate::{
     body::Water,
@@ -19,8 +19,9 @@ use bevy_egui::{
 /// Draws the panel and writes what is changed.
 pub(super) fn draw(world: &mut World) {
     let mut contexts = world.query_filtered::<(Entity, &mut EguiContext), With<PrimaryEguiContext>>();
-    let Ok((camera, mut context)) = contexts.single_mut(world) else { return };
+    let Ok((own, mut context)) = contexts.single_mut(world) else { return };
     let context = context.get_mut().clone();
+    let camera = scene_camera(world, own);
     world.resource_scope(|world, mut panel: Mut<WaterPanel>| {
         let panel = &mut *panel;
         panel.places.clear();

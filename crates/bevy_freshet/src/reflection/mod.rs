@@ -2,7 +2,8 @@
 //!
 //! A mirror camera stands where its viewer's eye is mirrored at the still surface, sees with the same projection, and
 //! draws everything above the water to a texture; the surface looks up where a reflected ray leaves that picture. What
-//! it costs is roughly the scene at the mirror's resolution; shadow maps are shared with the viewer.
+//! it costs is roughly the scene at the mirror's resolution; shadow maps are shared with the viewer if
+//! they can be.
 mod camera;
 mod projection;
 mod shadows;
@@ -37,8 +38,9 @@ pub struct WaterReflection {
     pub distance: f32,
     /// How strongly the surface's slopes distort the reflection, 0…1. Default 1, as in nature.
     pub distortion: f32,
-    /// Whether the mirror has shadow maps of the sun for itself. Default false: it uses its viewer's and so draws none, but
-    /// mirrored things that lie outside them are in the light. A mirror with other `layers` has its own.
+    /// Whether the mirror has shadow maps of the sun for itself. Default false: it uses its viewer's, which are then drawn once
+    /// for both if no other 3D camera is drawn between the two. Mirrored things can miss their shadow: where the
+    /// viewer has no map, and in steep views near the seam of two cascades. A mirror with `layers` of its own has its own maps.
     pub own_shadows: bool,
     /// What is mirrored. Default `None`: what the viewing camera sees.
     pub layers: Option<RenderLayers>,

@@ -33,6 +33,7 @@ pub(crate) struct FieldWork {
     pub surface: GpuSurface,
     pub bed: Option<AssetId<Image>>,
     pub flow: Option<AssetId<Image>>,
+    pub ice_order: Option<AssetId<Image>>,
     /// Rings and matter.
     pub pictures: [AssetId<Image>; 2],
     pub deposits: GpuDeposits,

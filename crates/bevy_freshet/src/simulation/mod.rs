@@ -28,6 +28,9 @@ mod tiles;
 mod window;
 
 pub(crate) use deposits::{Deposits, SilhouetteCell, Stroke};
+pub(crate) use frame::FieldFrame;
+pub(crate) use progress::FieldProgress;
+pub(crate) use tiles::{NARROWEST, REACH};
 pub(crate) use window::FieldWindow;
 
 use bevy::{
@@ -83,7 +86,10 @@ impl Plugin for SimulationPlugin {
 
         app.add_plugins(ExtractComponentPlugin::<frame::FieldFrame>::default()).add_systems(
             PostUpdate,
-            (window::place_windows.in_set(FieldSystems::Window), progress::step_fields.in_set(FieldSystems::Step)),
+            (
+                window::place_windows.in_set(FieldSystems::Window),
+                (progress::forget_frames, progress::step_fields).chain().in_set(FieldSystems::Step),
+            ),
         );
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         render_app

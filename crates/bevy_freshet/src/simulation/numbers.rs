@@ -61,7 +61,7 @@ pub(crate) struct GpuNumbers {
 
 /// Into how many parts a step is divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Parts {
+pub(crate) struct Parts {
     pub rings: u32,
     pub transport: u32,
 }
@@ -81,7 +81,7 @@ impl GpuNumbers {
             size: window.size,
             origin: window.origin(),
             drift: water.drift,
-            absorbs: absorbs(window, water.half_size),
+            absorbs: window.open_sides(water.half_size),
             cell: window.cell,
             flow_scale: water.flow.as_ref().map_or(0.0, |(_, scale)| *scale),
             open_below: transport::OPEN_BELOW,
@@ -162,13 +162,6 @@ impl GpuNumbers {
     }
 }
 
-/// Which rims of the window absorb: those that are not the water's own.
-fn absorbs(window: &FieldWindow, half_size: Vec2) -> Vec4 {
-    let (first, last) = (window.origin(), window.origin() + window.extent());
-    let within = [first.x > -half_size.x, last.x < half_size.x, first.y > -half_size.y, last.y < half_size.y];
-    Vec4::from_array(within.map(|within| f32::from(u8::from(within))))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -200,13 +193,5 @@ mod tests {
         let fast = ResolvedWater { drift: vec2(5.0, 0.0), ..water };
         let (fast, parts) = numbers(&WaterInteraction::default(), &fast);
         assert!(parts.transport > 1 && fast.most_speed > 5.0, "{parts:?}");
-    }
-
-    #[test]
-    fn rims_within_the_water_absorb() {
-        let window = FieldWindow { first: ivec2(-10, -4), size: uvec2(20, 16), cell: 1.0 };
-        assert_eq!(absorbs(&window, vec2(10.0, 4.0)), vec4(0.0, 0.0, 0.0, 1.0).with_w(0.0));
-        assert_eq!(absorbs(&window, vec2(10.0, 40.0)), vec4(0.0, 0.0, 1.0, 1.0));
-        assert_eq!(absorbs(&window, vec2(11.0, 40.0)), Vec4::ONE);
     }
 }

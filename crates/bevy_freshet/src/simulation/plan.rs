@@ -76,6 +76,7 @@ pub(super) fn plan_fields(
 struct Images<'a> {
     bed: &'a GpuImage,
     flow: &'a GpuImage,
+    ice_order: &'a GpuImage,
     pictures: [&'a GpuImage; 2],
 }
 
@@ -87,6 +88,7 @@ impl<'a> Images<'a> {
         Some(Self {
             bed: or_fallback(work.bed)?,
             flow: or_fallback(work.flow)?,
+            ice_order: or_fallback(work.ice_order)?,
             pictures: [images.get(rings)?, images.get(matter)?],
         })
     }
@@ -185,8 +187,9 @@ impl Surroundings<'_> {
     fn run_on_water(&self, stage: &Stage, state: &FieldState, buffers: &[&Buffer], workgroups: UVec2) -> Run {
         let mut run = self.run(stage, state, buffers, workgroups);
         let layout = self.cache.get_bind_group_layout(&self.stages.water);
-        let (bed, flow) = (&self.images.bed.texture_view, &self.images.flow.texture_view);
-        let entries = BindGroupEntries::with_indices(((0, &state.surface), (8, bed), (9, flow)));
+        let Images { bed, flow, ice_order, .. } = &self.images;
+        let [bed, flow, ice_order] = [bed, flow, ice_order].map(|image| &image.texture_view);
+        let entries = BindGroupEntries::with_indices(((0, &state.surface), (8, bed), (9, flow), (14, ice_order)));
         run.groups.push(self.device.create_bind_group("water_below", &layout, &entries));
         run
     }

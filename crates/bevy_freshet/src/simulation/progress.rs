@@ -8,7 +8,7 @@ use super::{
 use crate::{
     body::{ResolvedWater, WaterFoam, WaterInteraction},
     report::Reported,
-    surface::{GpuSurface, GroundTextures, write_ground, write_water},
+    surface::{GpuSurface, GroundTextures, write_frozen, write_ground, write_water},
 };
 use bevy::prelude::*;
 use core::time::Duration;
@@ -37,10 +37,10 @@ pub(crate) struct FieldProgress {
     late: u32,
     drafts: Drafts,
     strokes: Vec<Stroke>,
-    /// For how long rings, foam and dye are worth steps, s.
-    rings_last: f32,
-    foam_lasts: f32,
-    dye_lasts: f32,
+    /// For how many more lives rings, foam and dye are worth steps.
+    rings_left: f32,
+    foam_left: f32,
+    dye_left: f32,
     ground: Ground,
     /// Counts the grounds.
     version: u64,
@@ -58,6 +58,11 @@ struct Ground {
     textures: [Option<AssetId<Image>>; 2],
 }
 
+/// What was to be done in the last frame is not done again, also for a water that lacks what `step_fields` asks for.
+pub(super) fn forget_frames(mut frames: Query<&mut FieldFrame, With<FieldProgress>>) {
+    frames.iter_mut().for_each(|mut frame| *frame = FieldFrame::Idle);
+}
+
 /// Advances the clock of every water's fields and says what is to be done.
 pub(super) fn step_fields(
     time: Res<Time>,
@@ -73,7 +78,7 @@ pub(super) fn step_fields(
     for (entity, (settings, foam, water, window), fields) in &mut waters {
         let (mut deposits, mut progress, mut pictures, mut frame) = fields;
         *frame = if window.size == UVec2::ZERO {
-            switch_off(&mut progress, &mut pictures, &frame)
+            switch_off(&mut progress, &mut pictures)
         } else {
             progress.resize(window, &mut pictures, &mut images);
             let settings = Settings { entity, interaction: settings, foam, water, window };
@@ -100,8 +105,8 @@ struct Settings<'a> {
     window: &'a FieldWindow,
 }
 
-fn switch_off(progress: &mut FieldProgress, pictures: &mut FieldPictures, frame: &FieldFrame) -> FieldFrame {
-    if pictures.rings.is_none() && matches!(frame, FieldFrame::Idle | FieldFrame::Off) {
+fn switch_off(progress: &mut FieldProgress, pictures: &mut FieldPictures) -> FieldFrame {
+    if pictures.rings.is_none() {
         return FieldFrame::Idle;
     }
     // Generations go on counting, so that a late word of the render world is not taken for another one.
@@ -112,6 +117,11 @@ fn switch_off(progress: &mut FieldProgress, pictures: &mut FieldPictures, frame:
 }
 
 impl FieldProgress {
+    /// Whether the clock runs: not until the stages have been made and the pictures are drawn.
+    pub fn runs(&self) -> bool {
+        self.drawn.load(Ordering::Relaxed) >= self.generation
+    }
+
     /// Makes pictures of the window's size.
     fn resize(&mut self, window: &FieldWindow, pictures: &mut FieldPictures, images: &mut Assets<Image>) {
         let fits = |image: &Handle<Image>| images.get(image).is_some_and(|image| image.size() == window.size);
@@ -137,8 +147,7 @@ impl FieldProgress {
         // Taken, lest a stroke that nobody clears counts again.
         self.strokes.append(&mut deposits.strokes);
         self.strokes.drain(..self.strokes.len().saturating_sub(MOST_STROKES));
-        // Until the stages have been made and the pictures are drawn, the clock stands still.
-        if self.drawn.load(Ordering::Relaxed) < self.generation {
+        if !self.runs() {
             return Some(work);
         }
         let steps = self.steps(settings.entity, delta, reported);
@@ -151,13 +160,13 @@ impl FieldProgress {
             work.deposits = GpuDeposits::new(settings.window, &all, &mut self.drafts, factor);
             self.keep_alive(&work, settings);
             let run = STEP.as_secs_f32() * steps as f32;
-            work.ring_steps = if self.rings_last > 0.0 { steps * parts.rings } else { 0 };
-            work.is_dyed = self.dye_lasts > 0.0;
-            let matters = work.is_dyed || self.foam_lasts > 0.0;
+            work.ring_steps = if self.rings_left > 0.0 { steps * parts.rings } else { 0 };
+            work.is_dyed = self.dye_left > 0.0;
+            let matters = work.is_dyed || self.foam_left > 0.0;
             work.transport_steps = if matters { steps * parts.transport } else { 0 };
-            self.rings_last -= run;
-            self.foam_lasts -= run;
-            self.dye_lasts -= run;
+            self.rings_left -= run * work.numbers.ring_decay;
+            self.foam_left -= run / work.numbers.foam_life;
+            self.dye_left -= run * work.numbers.dye_decay;
         } else if moved {
             work.deposits = GpuDeposits::covers(settings.window, deposits);
         }
@@ -181,9 +190,10 @@ impl FieldProgress {
         let mut surface = GpuSurface::default();
         write_water(&mut surface, water);
         let (bed, flow) = write_ground(&mut surface, water, textures, images);
-        let [bed, flow] = [bed, flow].map(|texture| texture.map(|texture| texture.id()));
-        // Waves move all the time and do not change the ground.
-        let still = GpuSurface { waves: default(), ..surface.clone() };
+        let ice = write_frozen(&mut surface, water, textures, images);
+        let [bed, flow, ice_order] = [bed, flow, ice].map(|texture| texture.map(|texture| texture.id()));
+        // Waves move all the time, and ice comes and goes; they do not change the ground.
+        let still = GpuSurface { waves: default(), ice_freezing: 0.0, ..surface.clone() };
         let ground = Ground { window: *window, numbers: numbers.clone(), surface: still, textures: [bed, flow] };
         let moved = ground != self.ground;
         if moved {
@@ -197,6 +207,7 @@ impl FieldProgress {
             surface,
             bed,
             flow,
+            ice_order,
             pictures: [pictures.rings.as_ref()?.id(), pictures.matter.as_ref()?.id()],
             deposits: default(),
             ground: self.version,
@@ -232,17 +243,19 @@ impl FieldProgress {
         let (numbers, strokes) = (&work.numbers, &work.deposits.strokes);
         let raised = work.deposits.silhouettes.iter().any(|one| one.raise != 0.0);
         if raised || strokes.iter().any(|stroke| stroke.volume != 0.0) {
-            self.rings_last = LIVES / numbers.ring_decay;
+            self.rings_left = LIVES;
         }
-        let foamy = settings.water.bed.is_some() && numbers.shore > 0.0
+        let open = settings.water.ice.as_ref().is_none_or(|ice| !ice.is_closed());
+        let born = settings.water.bed.is_some() && numbers.shore > 0.0
             || work.drifts && (numbers.shear > 0.0 || numbers.speed > 0.0)
-            || !work.deposits.silhouettes.is_empty() && numbers.bodies > 0.0
-            || strokes.iter().any(|stroke| stroke.foam != 0.0);
-        if foamy {
-            self.foam_lasts = LIVES * numbers.foam_life;
+            || !work.deposits.silhouettes.is_empty() && numbers.bodies > 0.0;
+        if settings.foam.amount <= 0.0 {
+            self.foam_left = 0.0;
+        } else if open && born || strokes.iter().any(|stroke| stroke.foam != 0.0) {
+            self.foam_left = LIVES;
         }
         if strokes.iter().any(|stroke| stroke.dye != Vec3::ZERO) {
-            self.dye_lasts = LIVES / numbers.dye_decay;
+            self.dye_left = LIVES;
         }
     }
 }

@@ -1,6 +1,7 @@
-// Stage: what carries foam and dye, and where foam is born. Runs once a frame.
+// Stage: what carries foam and dye, and where foam is born: not under ice. Runs once a frame.
 #import freshet::simulation::numbers::{numbers, inside, index, place}
 #import freshet::surface::bindings::surface
+#import freshet::surface::frozen
 #import freshet::surface::waves
 
 @group(0) @binding(1) var<storage, read> ground: array<vec4<f32>>;          // current (m/s), depth (m), shear (1/s)
@@ -57,5 +58,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let body = nearest_body(at);
         births += numbers.bodies * body.z * (1.0 - own.z) * length(body.xy - here.xy);
     }
-    stream[index(at)] = vec4(velocity, depth, births);
+    stream[index(at)] = vec4(velocity, depth, births * frozen::felt(place(at)).open);
 }

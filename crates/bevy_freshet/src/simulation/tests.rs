@@ -232,6 +232,15 @@ fn assert_same(
 
 #[test]
 fn the_stages_do_what_their_twins_do() {
+    compare_with_twins(true);
+}
+
+#[test]
+fn the_stages_do_what_their_twins_do_where_there_is_no_dye() {
+    compare_with_twins(false);
+}
+
+fn compare_with_twins(dyed: bool) {
     // A shoal in a current that is faster in the middle; 65 × 45 cells, no multiple of a workgroup.
     let bed = WaterBed::from_fn(uvec2(40, 30), 0.5, |p| 0.14 * (p.y.abs() - 4.9) + 0.2 * (p.x * 0.9).sin()).unwrap();
     let current =
@@ -245,8 +254,9 @@ fn the_stages_do_what_their_twins_do() {
     let cells = basin.cells();
     assert_eq!(cells.size, uvec2(66, 46));
     for frame in 0..50 {
-        let touch = Stroke { volume: 0.01, foam: 0.05, dye: vec3(0.3, 0.1, 0.02), ..stroke(vec2(-3.0, 0.4), 0.4) };
-        let spill = Stroke { dye: Vec3::splat(0.2), ..stroke(vec2(2.0, -1.1), 0.3) };
+        let dye = if dyed { vec3(0.3, 0.1, 0.02) } else { Vec3::ZERO };
+        let touch = Stroke { volume: 0.01, foam: 0.05, dye, ..stroke(vec2(-3.0, 0.4), 0.4) };
+        let spill = Stroke { dye: 2.0 * dye, ..stroke(vec2(2.0, -1.1), 0.3) };
         let strokes = match frame {
             5 => vec![touch, spill],
             20 => vec![spill],
@@ -264,12 +274,36 @@ fn the_stages_do_what_their_twins_do() {
     assert!(dry > 300 && dry < cells.count() / 2, "there are banks: {dry} dry cells");
     assert_same("height", &cells, |i| rings[i].z, |i| twin.rings.waves[i].x, wet);
     assert_same("foam", &cells, |i| matter[i].x, |i| twin.transport.matter[i].x.clamp(0.0, 1.0), wet);
-    for channel in [1, 2, 3] {
+    for channel in [1, 2, 3].into_iter().filter(|_| dyed) {
         let absorption = |i: usize| twin.transport.matter[i][channel] / stream[i].depth.clamp(0.05, 2.0);
         assert_same("dye", &cells, |i| matter[i][channel], absorption, wet);
     }
     let covered: f32 = rings.iter().map(|texel| texel.w).sum();
     assert_eq!(covered, 3.5);
+}
+
+/// What is left is counted in lives and not in seconds of the life that was set when it came.
+#[test]
+fn dye_and_rings_whose_life_is_prolonged_are_not_forgotten() {
+    let mut basin = pond(4.0);
+    let set = |basin: &mut Basin, decay, dye_life| {
+        let mut water = basin.stage.app.world_mut().entity_mut(basin.water);
+        let mut settings = water.get_mut::<WaterInteraction>().unwrap();
+        (settings.decay, settings.dye_life) = (decay, dye_life);
+    };
+    set(&mut basin, 0.2, 0.2);
+    let touch = Stroke { volume: 0.01, dye: Vec3::ONE, ..stroke(vec2(0.3, 0.1), 0.4) };
+    basin.frame(strokes(vec![touch]));
+    set(&mut basin, 1e3, 1e6);
+    let sum = |matter: Vec<Vec4>| matter.iter().map(|texel| texel.y).sum::<f32>();
+    let before = sum(basin.matter());
+    // Ten of the first lives and a little.
+    basin.stage.run(2.2);
+    let (first, dye) = (basin.rings(), sum(basin.matter()));
+    basin.stage.run(0.1);
+    let moved = first.iter().zip(basin.rings()).map(|(a, b)| (a.z - b.z).abs()).fold(0.0, f32::max);
+    assert!(before > 0.1 && (dye / before - 1.0).abs() < 0.01, "{dye} of {before} is left");
+    assert!(moved > 1e-5, "rings go on: {moved}");
 }
 
 /// Deep still water without foam.

@@ -7,9 +7,10 @@ use std::collections::BTreeMap;
 pub(super) const TILE: u32 = 8;
 
 /// How many standard deviations a stroke reaches: beyond lie 3·10⁻⁴ of it.
-const REACH: f32 = 4.0;
-/// Narrowest stroke, cells: its sum over the cells is right to 10⁻⁴.
-const NARROWEST: f32 = 0.75;
+pub(crate) const REACH: f32 = 4.0;
+/// Narrowest stroke, cells. Sampled at cell centres its volume is right to 10⁻⁴: the error is `2 exp(−2 π² σ²)` (Poisson
+/// summation).
+pub(crate) const NARROWEST: f32 = 0.75;
 
 /// The twin of `Silhouette` in `bodies.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]

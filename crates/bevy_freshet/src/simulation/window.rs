@@ -28,6 +28,9 @@ const SNAP: f32 = 8.0;
 /// How far ahead of the camera the middle of the window is, in lengths of the window.
 const AHEAD: f32 = 0.35;
 
+/// Part of a cell by which a water may be larger than its cells, lest one of whole cells gets one more by rounding.
+const SLACK: f32 = 1e-3;
+
 impl FieldWindow {
     /// Local xz of the north-west corner, m.
     pub fn origin(&self) -> Vec2 {
@@ -44,13 +47,21 @@ impl FieldWindow {
         self.size.as_vec2() * self.cell
     }
 
+    /// 1 for each side (low x, high x, low z, high z) at which water of `half_size` (m) goes on beyond the window, 0 for those
+    /// that are the water's own.
+    pub fn open_sides(&self, half_size: Vec2) -> Vec4 {
+        let (first, last) = (self.origin() + half_size, half_size - self.origin() - self.extent());
+        let beyond = vec4(first.x, last.x, first.y, last.y);
+        // Cells may end that much before the water does.
+        Vec4::select(beyond.cmpgt(Vec4::splat(2.0 * SLACK * self.cell)), Vec4::ONE, Vec4::ZERO)
+    }
+
     /// The window of a water of `half_size` (m) with cells of `cell` (m), at most `cells` along an axis: all of the water
     /// if it fits, else around local `middle` as far as the water reaches.
     fn around(middle: Vec2, half_size: Vec2, cell: f32, cells: f32) -> Self {
         // Water of few cells gets finer ones.
         let cell = cell.min(2.0 * half_size.min_element() / FEWEST);
-        // A hair less, lest a water of whole cells gets one more by rounding.
-        let reach = (half_size / cell - 1e-3).ceil().max(Vec2::ONE);
+        let reach = (half_size / cell - SLACK).ceil().max(Vec2::ONE);
         let size = (2.0 * reach).min(Vec2::splat(cells));
         let first = ((middle / cell - 0.5 * size) / SNAP).round() * SNAP;
         let first = first.clamp(-reach, reach - size);
@@ -92,6 +103,9 @@ mod tests {
         let window = FieldWindow::around(vec2(7.0, 3.0), vec2(10.0, 5.1), 0.25, 512.0);
         assert_eq!(window, FieldWindow { first: ivec2(-40, -21), size: uvec2(80, 42), cell: 0.25 });
         assert_eq!(window.cells_from_place(window.origin()), Vec2::ZERO);
+        assert_eq!(window.open_sides(vec2(10.0, 5.1)), Vec4::ZERO);
+        let odd = vec2(10.0002, 5.0002);
+        assert_eq!(FieldWindow::around(Vec2::ZERO, odd, 0.25, 512.0).open_sides(odd), Vec4::ZERO);
         // However small it is.
         let puddle = FieldWindow::around(Vec2::ZERO, vec2(0.4, 1.0), 0.25, 512.0);
         assert_eq!(puddle.size, uvec2(16, 40));
@@ -106,7 +120,17 @@ mod tests {
             let (first, last) = (window.origin(), window.origin() + window.extent());
             assert!(first.cmpge(vec2(-500.0, -300.0)).all() && last.cmple(vec2(500.0, 300.0)).all(), "{window:?}");
         }
+        assert_eq!(at(0.0, 0.0).open_sides(vec2(500.0, 300.0)), Vec4::ONE);
+        assert_eq!(at(499.0, 0.0).open_sides(vec2(500.0, 300.0)), vec4(1.0, 0.0, 1.0, 1.0));
         assert_eq!(at(0.0, 0.0), at(0.9, -0.9));
         assert_eq!(at(2.0, 0.0).first - at(0.0, 0.0).first, ivec2(8, 0));
+    }
+
+    #[test]
+    fn sides_beyond_which_the_water_goes_on_are_open() {
+        let window = FieldWindow { first: ivec2(-10, -4), size: uvec2(20, 16), cell: 1.0 };
+        assert_eq!(window.open_sides(vec2(10.0, 4.0)), Vec4::ZERO);
+        assert_eq!(window.open_sides(vec2(10.0, 40.0)), vec4(0.0, 0.0, 1.0, 1.0));
+        assert_eq!(window.open_sides(vec2(11.0, 40.0)), Vec4::ONE);
     }
 }

@@ -15,7 +15,7 @@
 //! illuminance, clouds from noise lit by all of these. At night there are stars and, if wanted, a [`Moon`], whose light passes
 //! through the same air and clouds. Everything is in cd/m² and lux. It is computed on the CPU when a
 //! [`Sky`] changes, so a sky that stands still costs nothing. It is not for a sun that moves in every frame: a repaint of
-//! the default resolution took 0.5 to 1.1 s on two busy cores, and 2.2 to 2.9 s when the clouds were new.
+//! the default resolution took 0.5 to 1.1 s on two cores, and 2.2 to 2.9 s when the clouds were new.
 //!
 //! Without `Assets<Image>`, as on a server, nothing runs. The same [`Sky`] gives the same bytes on the same machine.
 

@@ -12,15 +12,15 @@ struct Field {
     dye: vec3<f32>,     // absorption of dye, units: 1/m
 }
 
-// The fields at local `place`; nothing beyond the window, towards whose rim they fade.
+// The fields at local `place`; nothing beyond the window, towards whose rim they fade where the water goes on.
 fn at(place: vec2<f32>) -> Field {
     var field = Field(vec2(0.0), 0.0, 0.0, 0.0, vec3(0.0));
     if (surface.flags & types::FLAG_FIELD) == 0u {
         return field;
     }
     let uv = (place - surface.field_origin) * surface.field_scale;
-    let from_rim = min(uv, 1.0 - uv);
-    let share = smoothstep(0.0, 0.04, min(from_rim.x, from_rim.y));
+    let ways = mix(vec4(1.0), vec4(uv.x, 1.0 - uv.x, uv.y, 1.0 - uv.y), surface.field_open);
+    let share = smoothstep(0.0, 0.04, min(min(ways.x, ways.y), min(ways.z, ways.w)));
     if share <= 0.0 {
         return field;
     }

@@ -58,6 +58,7 @@ pub(crate) struct GpuSurface {
 
     pub field_origin: Vec2,
     pub field_scale: Vec2,
+    pub field_open: Vec4,
 
     pub foam_albedo: Vec3,
     pub foam_amount: f32,

@@ -36,6 +36,17 @@ pub(super) fn write_ice(
     let (albedo, fallback) = (settings.snow_albedo.to_vec3(), usable.snow_albedo.to_vec3());
     gpu.ice_snow_albedo = clamp3("WaterIce::snow_albedo", albedo, 1.0, fallback);
 
+    let order = write_frozen(gpu, water, ground, images)?;
+    Some(IceTextures { order, tile: ground.ice_tile.get(images) })
+}
+
+/// Writes where a water is frozen, and gives the order of freezing; `None` where nothing is.
+pub(crate) fn write_frozen(
+    gpu: &mut GpuSurface,
+    water: &ResolvedWater,
+    ground: &mut GroundTextures,
+    images: &mut Assets<Image>,
+) -> Option<Handle<Image>> {
     let ice = water.ice.as_ref()?;
     gpu.flags |= GpuSurface::ICE;
     gpu.ice_freezing = ice.winter.freezing;
@@ -43,5 +54,5 @@ pub(super) fn write_ice(
     gpu.ice_level_drop = ice.level_drop;
     gpu.ice_order_size = ice.order.size().as_vec2();
     gpu.ice_order_cell = ice.order.cell_size();
-    Some(IceTextures { order: ground.ice_order(&ice.order, images), tile: ground.ice_tile.get(images) })
+    Some(ground.ice_order(&ice.order, images))
 }

@@ -1,9 +1,9 @@
 // How ice looks: snow over clear ice over water.
 #define_import_path freshet::surface::ice
 
-#import freshet::surface::bindings::{surface, ice_order, ice_tile, detail_sampler}
+#import freshet::surface::bindings::{surface, ice_tile, detail_sampler}
 #import freshet::surface::flow::Footprint
-#import freshet::surface::ground
+#import freshet::surface::frozen::Felt
 #import freshet::surface::ice_growth as growth
 #import freshet::surface::light::Light
 #import freshet::surface::mirror
@@ -21,34 +21,6 @@ const RELIEF: f32 = 0.017;
 const COARSE: mat2x2<f32> = mat2x2<f32>(vec2(0.2165, 0.1563), vec2(-0.1563, 0.2165));
 // How far the pattern pushes the front of the ice to and fro, in order of freezing.
 const RAGGED: f32 = 0.16;
-
-// The order of freezing at local `place`, sampled as `freshet_hydro::grid::Grid::sample` does.
-fn order(place: vec2<f32>) -> f32 {
-    let c = ground::cells_around(place, surface.ice_order_cell, surface.ice_order_size);
-    let nw = textureLoad(ice_order, c.low, 0).x;
-    let ne = textureLoad(ice_order, vec2(c.high.x, c.low.y), 0).x;
-    let sw = textureLoad(ice_order, vec2(c.low.x, c.high.y), 0).x;
-    let se = textureLoad(ice_order, c.high, 0).x;
-    let north = nw + (ne - nw) * c.t.x;
-    let south = sw + (se - sw) * c.t.x;
-    return north + (south - north) * c.t.y;
-}
-
-// The ice as bodies feel it.
-struct Felt {
-    order: f32,
-    thickness: f32, // units: m
-    open: f32,      // share of the surface that no ice covers
-}
-
-fn felt(place: vec2<f32>) -> Felt {
-    if (surface.flags & types::FLAG_ICE) == 0u {
-        return Felt(1.0, 0.0, 1.0);
-    }
-    let order = order(place);
-    let thickness = growth::thickness(order, surface.ice_freezing, surface.ice_thickest);
-    return Felt(order, thickness, 1.0 - growth::cover(thickness));
-}
 
 // How far the surface has sunk under ice of `thickness`, m.
 fn drop(thickness: f32) -> f32 {

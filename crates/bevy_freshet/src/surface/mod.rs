@@ -19,6 +19,7 @@ mod views;
 mod write;
 
 pub(crate) use gpu::GpuSurface;
+pub(crate) use ice::write_frozen;
 pub(crate) use ripples::advance_ripples;
 pub(crate) use sync::GroundTextures;
 pub use viewer::NoWater;
@@ -127,6 +128,7 @@ impl Plugin for SurfacePlugin {
         load_shader_library!(app, "field.wgsl");
         load_shader_library!(app, "foam.wgsl");
         load_shader_library!(app, "ice_growth.wgsl");
+        load_shader_library!(app, "frozen.wgsl");
         load_shader_library!(app, "ice.wgsl");
         load_shader_library!(app, "mesh.wgsl");
         load_shader_library!(app, "waves.wgsl");

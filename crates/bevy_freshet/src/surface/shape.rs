@@ -82,14 +82,23 @@ fn rings_for(inner: f32, reach: f32) -> usize {
     (around + 1).min(SurfaceShape::MOST_RINGS)
 }
 
-/// The widest spacing (m) with which each train of waves, and the front of ice, is drawn within `error` metres of its place.
+/// The widest spacing (m) with which each train of waves is drawn within `error` metres of its place, also where it fades at the
+/// shore and at the front of ice.
 ///
 /// Straight between samples s apart, A cos(k x) is off by A k² s²/8 at most. What is lower than the error needs no samples.
 fn spacing_for(water: &ResolvedWater, error: f32) -> f32 {
+    if error <= 0.0 {
+        return 0.0;
+    }
     let trains = water.waves.trains.iter().filter(|train| train.amplitude > error);
     let spacings = trains.map(|train| (8.0 * error / train.amplitude).sqrt() / train.wave_vector.length());
-    let ice = water.ice.as_ref().filter(|ice| ice.deepest_drop() > error).map(|ice| ice.order.cell_size());
-    spacings.chain(ice).fold(f32::INFINITY, f32::min)
+    // What fades turns within a cell of what it fades by.
+    let highest = water.waves.trains.iter().map(|train| train.amplitude).fold(0.0, f32::max);
+    let bed = water.bed.as_ref().filter(|_| water.fade_depth > 0.0 && highest > error);
+    let ice = water.ice.as_ref().filter(|ice| highest.max(ice.deepest_drop()) > error);
+    let bed = bed.map(|bed| bed.elevations.cell_size());
+    let ice = ice.map(|ice| ice.order.cell_size());
+    spacings.chain(bed).chain(ice).fold(f32::INFINITY, f32::min)
 }
 
 /// The powers of two by which rings are coarsened of which each could do with cells `wanted` times as large. Rings keep 8 cells

@@ -6,6 +6,7 @@
 #import freshet::surface::field
 #import freshet::surface::flow
 #import freshet::surface::foam
+#import freshet::surface::frozen
 #import freshet::surface::ground
 #import freshet::surface::ice
 #import freshet::surface::light
@@ -38,9 +39,9 @@ struct Fragment {
 @vertex
 fn vertex(in: Vertex) -> Fragment {
     let rest = clamp(surface.mesh_center + in.position.xz, -surface.half_size, surface.half_size);
-    let felt = ice::felt(rest);
+    let felt = frozen::felt(rest);
     let fade = waves::shallow_fade(ground::still_depth(rest)) * felt.open;
-    let moved = waves::displacement(rest, fade, mesh::spacing_at(in.position.xz));
+    let moved = waves::displacement(rest, fade, mesh::spacing_at(rest - surface.mesh_center));
     let xz = surface.world_from_local * (rest + moved.xz) + surface.world_origin;
     let world = vec3(xz.x, surface.level - ice::drop(felt.thickness) + moved.y, xz.y);
     return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest);
@@ -82,7 +83,7 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
     let footprint = flow::Footprint(dpdx(in.rest), dpdy(in.rest));
     let pixel_size = max(length(footprint.x), length(footprint.y));
     let drift = flow::drift(in.rest, still_depth);
-    let felt = ice::felt(in.rest);
+    let felt = frozen::felt(in.rest);
     let facet = facet(in.rest, still_depth, drift, footprint, fields.slope, felt.open);
     let sheet = ice::sheet(in.rest, felt, footprint);
     let normal = normal_of(facet.slope);

@@ -7,10 +7,16 @@ use super::{
     ice_tile::IceTile,
     material::SurfaceMaterial,
     mesh::nested_grid,
+    ripples::Ripples,
     shape::{ShapeKey, SurfaceShape},
     viewer::Viewers,
 };
-use crate::{body::ResolvedWater, report::Reported};
+use crate::{
+    body::{ResolvedWater, WaterFoam, WaterLighting, WaterOptics},
+    reflection::WaterReflection,
+    report::Reported,
+    simulation::{FieldPictures, FieldWindow},
+};
 use bevy::{
     asset::RenderAssetUsages,
     camera::{primitives::Aabb, visibility::RenderLayers},
@@ -153,6 +159,17 @@ fn grid_image(label: &'static str, size: UVec2, format: TextureFormat, data: Vec
     image
 }
 
+/// Waters of which nothing is missing that [`Water`](crate::body::Water) brings: a game can remove it.
+type Drawable = (
+    With<Ripples>,
+    With<WaterOptics>,
+    With<WaterReflection>,
+    With<WaterFoam>,
+    With<WaterLighting>,
+    With<FieldWindow>,
+    With<FieldPictures>,
+);
+
 /// Spawns, shapes and despawns surface entities so that there is one for every water and viewing camera.
 pub(crate) fn sync_surfaces(
     mut commands: Commands,
@@ -163,7 +180,7 @@ pub(crate) fn sync_surfaces(
     mut buffers: ResMut<Assets<ShaderBuffer>>,
     mut reported: ResMut<Reported>,
     viewers: Viewers,
-    waters: Query<(Entity, &WaterSurface, &ResolvedWater, &InheritedVisibility, Option<&RenderLayers>)>,
+    waters: Query<(Entity, &WaterSurface, &ResolvedWater, &InheritedVisibility, Option<&RenderLayers>), Drawable>,
     mut surfaces: Query<(Entity, &SurfaceOf, &mut SurfaceShape)>,
 ) {
     ground.collect();

@@ -57,6 +57,7 @@ struct Surface {
 
     field_origin: vec2<f32>,        // north-west corner of the simulated window, local xz, units: m
     field_scale: vec2<f32>,         // windows per metre
+    field_open: vec4<f32>,          // 1 where the water goes on beyond the window: at low x, high x, low z, high z
 
     foam_albedo: vec3<f32>,
     foam_amount: f32,

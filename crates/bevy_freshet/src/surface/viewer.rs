@@ -53,11 +53,18 @@ pub(crate) struct ViewerData<'a> {
 }
 
 impl ViewerData<'_> {
-    /// Height of what a pixel in the middle of the picture shows, m, of things `distance` metres away.
+    /// Height of what a pixel in the middle of the picture shows, m, of things `distance` metres away; 0 if the projection
+    /// does not tell.
     pub fn pixel_size(&self, distance: f32) -> f32 {
-        let clip_from_view = self.projection.get_clip_from_view();
-        let w = clip_from_view.w_axis.w + clip_from_view.z_axis.w.abs() * distance;
-        2.0 * w / (clip_from_view.y_axis.y * self.viewport.y as f32)
+        let clip_from_view = match &self.camera.sub_camera_view {
+            Some(part) => self.projection.get_clip_from_view_for_sub(part),
+            None => self.projection.get_clip_from_view(),
+        };
+        let (up, depth) = (clip_from_view.row(1), clip_from_view.row(3));
+        // A projection may turn the picture: what counts is how fast the row changes across the view.
+        let pixels = 0.5 * up.xy().length() * self.viewport.y as f32;
+        let size = (depth.w + depth.z.abs() * distance) / pixels;
+        if size.is_finite() { size.max(0.0) } else { 0.0 }
     }
 
     /// Gives `mirror` the fog, light and shadows of this camera.
@@ -153,5 +160,53 @@ pub(super) fn show_each_viewer_its_own(
         if !foreign.is_empty() {
             visible.get_mut(TypeId::of::<Mesh3d>()).retain(|entity| !foreign.contains(entity));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::{
+        camera::{ScalingMode, SubCameraView},
+        math::Affine3A,
+    };
+
+    fn pixel_size(projection: &Projection, camera: &Camera) -> f32 {
+        let pose = GlobalTransform::from(Affine3A::IDENTITY);
+        let viewer = ViewerData {
+            entity: Entity::PLACEHOLDER,
+            camera,
+            pose: &pose,
+            projection,
+            viewport: uvec2(200, 100),
+            exposure: None,
+            layers: None,
+            environment: None,
+            skybox: None,
+            fog: None,
+            ambient: None,
+            shadow_filter: None,
+        };
+        viewer.pixel_size(30.0)
+    }
+
+    #[test]
+    fn a_pixel_shows_what_the_projection_says() {
+        let whole = Camera::default();
+        // A right angle: 60 m high at a distance of 30 m.
+        let perspective = PerspectiveProjection { fov: core::f32::consts::FRAC_PI_2, ..default() };
+        let eye = Projection::Perspective(perspective);
+        assert!((pixel_size(&eye, &whole) - 0.6).abs() < 1e-4);
+        let orthographic = OrthographicProjection {
+            scaling_mode: ScalingMode::FixedVertical { viewport_height: 8.0 },
+            ..OrthographicProjection::default_3d()
+        };
+        let mut orthographic = Projection::Orthographic(orthographic);
+        orthographic.update(200.0, 100.0);
+        assert!((pixel_size(&orthographic, &whole) - 0.08).abs() < 1e-4);
+        // A quarter of a picture is twice as fine along each side.
+        let quarter = SubCameraView { full_size: uvec2(400, 200), offset: Vec2::ZERO, size: uvec2(200, 100) };
+        let quarter = Camera { sub_camera_view: Some(quarter), ..default() };
+        assert!((pixel_size(&eye, &quarter) - 0.3).abs() < 1e-4);
     }
 }

@@ -73,7 +73,7 @@ pub(super) fn write_surfaces(
         write_detail(&mut gpu, entity, settings, ripples, &mut reported);
         (textures.bed, textures.flow) = write_ground(&mut gpu, resolved, &mut ground, &mut images);
         write_mirror(&mut gpu, &mut textures, entity, reflection, resolved, &viewer, &mirrors, &mut reported);
-        write_field(&mut gpu, window, pictures);
+        write_field(&mut gpu, resolved, window, pictures);
         write_foam(&mut gpu, entity, foam, ripples, &mut reported);
         write_lighting(&mut gpu, entity, lighting, &mut reported);
         let ice = write_ice(&mut gpu, entity, ice, resolved, &mut ground, &mut images, &mut reported);
@@ -243,11 +243,12 @@ fn write_mirror(
     }
 }
 
-fn write_field(gpu: &mut GpuSurface, window: &FieldWindow, pictures: &FieldPictures) {
+fn write_field(gpu: &mut GpuSurface, water: &ResolvedWater, window: &FieldWindow, pictures: &FieldPictures) {
     if pictures.rings.is_some() && pictures.matter.is_some() && window.size != UVec2::ZERO {
         gpu.flags |= GpuSurface::FIELD;
         gpu.field_origin = window.origin();
         gpu.field_scale = window.extent().recip();
+        gpu.field_open = window.open_sides(water.half_size);
     }
 }
 
