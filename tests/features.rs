@@ -148,6 +148,11 @@ fn a_feature_changes_the_water_where_it_acts_and_nothing_else() {
     let edge = Mask::of(&river.view(SurfaceView::Edge), |color| color.x < 1.0);
     // Under the ice that bodies feel and the one that is drawn, and as far as a vertex of the mesh reaches.
     let ice = Mask::of(&river.view(SurfaceView::Ice), |color| color.x.max(color.y) > 0.0).widened(6);
+    // Rings are drawn by their slope, from cell to cell.
+    let rings = Mask::of(&river.view(SurfaceView::Interaction), |color| color.y + color.z > 0.0).widened(4);
+    let covered = Mask::of(&river.view(SurfaceView::Interaction), |color| color.x > 0.0);
+    let dyed = Mask::of(&river.view(SurfaceView::Dye), |color| color.min_element() < 1.0);
+    let simulated = rings.or(&covered).or(&dyed).or(&foam);
     let check = |river: &mut River, feature: Feature, off: &Picture| {
         let changed = Mask::changed(&all, off);
         // Where the surface itself moves, so does what it covers.
@@ -160,6 +165,8 @@ fn a_feature_changes_the_water_where_it_acts_and_nothing_else() {
             Feature::Foam => &foam,
             Feature::Edge => &edge,
             Feature::Ice => &ice,
+            Feature::Rings => &rings,
+            Feature::Interaction => &simulated,
             _ => return,
         };
         assert_eq!(changed.beyond(acts), 0, "{}: of {} pixels where it acts", feature.name(), acts.count());
