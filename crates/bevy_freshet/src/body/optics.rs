@@ -84,8 +84,8 @@ impl WaterOptics {
     pub const PURE: Self = Self::BASE;
     /// A clear lowland river: 1.5 mg/m³ chlorophyll, dissolved organics 0.5 1/m, 1.5 g/m³ sediment.
     pub const RIVER: Self = Self::made_of(Vec3::new(0.38427, 0.1906, 0.54978), Vec3::new(0.01863, 0.01916, 0.02049));
-    /// A clear lake: 3 mg/m³ chlorophyll, dissolved organics 0.4 1/m, 0.6 g/m³ sediment.
-    pub const LAKE: Self = Self::made_of(Vec3::new(0.3835, 0.1652, 0.4571), Vec3::new(0.01182, 0.01232, 0.01362));
+    /// A clear lake: 1 mg/m³ chlorophyll, dissolved organics 0.1 1/m, 0.5 g/m³ sediment.
+    pub const LAKE: Self = Self::made_of(Vec3::new(0.3569, 0.0914, 0.1530), Vec3::new(0.00811, 0.00866, 0.01002));
     /// The open ocean: 0.2 mg/m³ chlorophyll, dissolved organics 0.02 1/m.
     pub const OCEAN: Self = Self::made_of(Vec3::new(0.3446, 0.0636, 0.0400), Vec3::new(0.00140, 0.00196, 0.00335));
     /// A tropical lagoon: 0.05 mg/m³ chlorophyll, dissolved organics 0.005 1/m.
@@ -116,7 +116,7 @@ mod tests {
     fn presets_are_what_their_constituents_make() {
         for (preset, chlorophyll, dissolved_organics, sediment) in [
             (WaterOptics::RIVER, 1.5, 0.5, 1.5),
-            (WaterOptics::LAKE, 3.0, 0.4, 0.6),
+            (WaterOptics::LAKE, 1.0, 0.1, 0.5),
             (WaterOptics::OCEAN, 0.2, 0.02, 0.0),
             (WaterOptics::TROPICAL, 0.05, 0.005, 0.0),
             (WaterOptics::MUDDY, 3.0, 1.2, 60.0),
