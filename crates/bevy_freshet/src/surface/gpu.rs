@@ -113,7 +113,9 @@ mod tests {
 
     #[test]
     fn the_shader_reads_what_is_written() {
-        let wgsl = WGSL.replace("#{MAX_WAVES}", &WaterWaves::MAX.to_string());
+        let rings = SurfaceShape::MOST_RINGS;
+        assert!(WGSL.contains(&format!("const RINGS: u32 = {rings}u;")));
+        let wgsl = WGSL.replace("#{MAX_WAVES}", &WaterWaves::MAX.to_string()).replace("RINGS>", &format!("{rings}>"));
         crate::layout::assert_same_layout::<GpuSurface, _>(&wgsl, "Surface");
     }
 

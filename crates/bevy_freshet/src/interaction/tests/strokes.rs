@@ -32,7 +32,7 @@ fn disturbances_reach_their_water() {
     assert_eq!((push.radius, push.foam), (0.4, 0.2));
     assert_near(push.volume, -2.0 * PI * 0.16 * 0.1, 1e-5, "volume of a dent");
     assert_eq!((dye.dye, dye.volume), (vec3(0.5, 1.0, 1.5), 0.0));
-    assert_near(dye.radius, 0.7 * CELL, 1e-5, "narrowest radius");
+    assert_near(dye.radius, 0.75 * CELL, 1e-5, "narrowest radius");
     assert_eq!((bad.volume, bad.foam, bad.dye), (0.0, 0.0, Vec3::ZERO));
     assert!(bad.radius > 0.0);
     assert_eq!(pond.strokes(), [], "each works once");
