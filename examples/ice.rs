@@ -104,7 +104,8 @@ fn setup(
     plant(&mut commands, &mut meshes, &mut materials, options.seed);
 
     let name = options.camera.as_deref().unwrap_or("bank");
-    let &(_, eye, target) = CAMERAS.iter().find(|camera| camera.0 == name).unwrap_or(&CAMERAS[0]);
+    let camera = CAMERAS.iter().find(|camera| camera.0 == name);
+    let &(_, eye, target) = camera.unwrap_or_else(|| common::fail("the cameras are bank, above and close"));
     let shadows = CascadeShadowConfigBuilder { num_cascades: 2, maximum_distance: 120.0, ..default() };
     commands.spawn((Sky::with_sun(16.0, 235.0), shadows.build()));
     commands.spawn((

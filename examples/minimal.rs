@@ -23,8 +23,8 @@ fn setup(
     mut materials: ResMut<Assets<StandardMaterial>>,
     canvas: Res<Canvas>,
 ) {
-    // Water of 120 m × 80 m, two metres above the origin.
-    commands.spawn((Water::new(vec2(120.0, 80.0)), WaterOptics::RIVER, Transform::from_xyz(0.0, 2.0, 0.0)));
+    // Water of 600 m × 600 m, two metres above the origin.
+    commands.spawn((Water::new(vec2(600.0, 600.0)), WaterOptics::RIVER, Transform::from_xyz(0.0, 2.0, 0.0)));
 
     // A crate of 400 kg/m³: two fifths of it are under water when it has come to rest.
     commands.spawn((

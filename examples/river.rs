@@ -17,15 +17,15 @@ use bevy_rapier3d::prelude::*;
 use clap::Parser;
 use common::Options;
 
-fn main() -> Result<AppExit, Box<dyn std::error::Error>> {
+fn main() -> AppExit {
     let options = Options::parse();
-    let mut app = river::app(&options)?;
+    let mut app = river::app(&options).unwrap_or_else(|problem| common::fail(problem));
     #[cfg(feature = "panel")]
     app.add_plugins(river_panel::plugin);
     if options.out.is_some() {
         app.add_systems(Last, print_table);
     }
-    Ok(common::run(app))
+    common::run(app)
 }
 
 /// After the last frame: where each body is, how fast, and how deep in the water.

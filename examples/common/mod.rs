@@ -20,17 +20,17 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The command line of every example.
+/// An example of bevy_freshet: in a window, or, with --out, into a picture.
 #[derive(Parser, Resource, Clone, Debug)]
 pub struct Options {
     /// Frames of 1/60 s to run before the picture is taken.
-    #[arg(long, default_value_t = 120)]
+    #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: u32,
     /// Width and height of the picture, pixels.
     #[arg(long, default_value = "960x540", value_parser = size)]
     pub size: UVec2,
-    /// Write a picture here instead of opening a window.
-    #[arg(long)]
+    /// Write a picture (PNG) here instead of opening a window.
+    #[arg(long, value_parser = picture)]
     pub out: Option<PathBuf>,
     /// Which of the example's cameras to look through.
     #[arg(long)]
@@ -49,6 +49,34 @@ pub fn size(text: &str) -> Result<UVec2, String> {
     parse()
         .filter(|size| (1..=8192).contains(&size.min_element()) && size.max_element() <= 8192)
         .ok_or_else(|| format!("expected WIDTHxHEIGHT between 1x1 and 8192x8192, found {text:?}"))
+}
+
+/// Where a picture can be written.
+fn picture(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(".".as_ref());
+    if path.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("png")) {
+        return Err("expected a file that ends in .png".into());
+    }
+    if !folder.is_dir() {
+        return Err(format!("there is no folder {}", folder.display()));
+    }
+    if path.is_dir() {
+        return Err("this is a folder".into());
+    }
+    Ok(path)
+}
+
+/// Whether a window can be opened; other systems than Linux always have a display.
+fn has_display() -> bool {
+    let names = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"];
+    !cfg!(target_os = "linux") || names.iter().any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
+}
+
+/// Ends the program with one line that says what is wrong.
+pub fn fail(problem: impl core::fmt::Display) -> ! {
+    eprintln!("error: {problem}");
+    std::process::exit(2)
 }
 
 /// Length of a frame without a window, s: headless runs do not follow the wall clock, so that they repeat.
@@ -74,6 +102,9 @@ pub fn app(title: &str, options: &Options) -> App {
     let mut app = App::new();
     let assets = AssetPlugin { file_path: "../../assets".into(), ..default() };
     if options.out.is_none() {
+        if !has_display() {
+            fail("there is no display for a window; --out FILE.png writes a picture instead");
+        }
         let resolution = options.size.into();
         let window = Window { title: title.into(), resolution, ..default() };
         app.add_plugins(DefaultPlugins.set(assets).set(WindowPlugin { primary_window: Some(window), ..default() }));

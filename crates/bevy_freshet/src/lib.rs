@@ -47,6 +47,7 @@ pub mod prelude {
         interaction::{Disturb, DisturbsWater, DyesWater, WaterTouch, WaterTouchBlocked},
         query::{WaterHit, WaterQuery, WaterSample},
         reflection::WaterReflection,
+        sky::{Sky, SkyPlugin, SkyView},
         star_filter::{StarFilter, StarFilterPlugin},
         surface::{NoWater, SurfaceView, WaterSurface},
     };

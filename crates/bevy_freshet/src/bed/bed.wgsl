@@ -117,6 +117,8 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     let dimmed = here.color * mix(1.0, 0.55, here.wet);
     pbr.material.base_color = vec4(dimmed, 1.0);
     pbr.material.perceptual_roughness = mix(0.95, 0.5, here.wet);
+    // Under water the ground refracts hardly more than what is around it, and does not glint.
+    pbr.material.reflectance *= smoothstep(-0.03, 0.0, in.world_position.y - bed.level);
     pbr.N = raised(pbr.N, in.world_position.xyz, here.height);
 
     var out: FragmentOutput;

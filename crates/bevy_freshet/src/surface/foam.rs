@@ -4,10 +4,13 @@ use bevy::{prelude::*, render::render_resource::TextureFormat};
 use std::f32::consts::{SQRT_2, TAU};
 
 /// Texels along one side of the tile.
-const SIZE: usize = 256;
+const SIZE: usize = 512;
+
+/// Patterns ([`WaterFoam::pattern_size`](crate::body::WaterFoam::pattern_size)) across the tile: so many that none sees it repeat.
+pub(super) const PATTERNS: f32 = 4.0;
 
 /// Cells of bubbles across the tile and the weight of each scale: froth is made of large and small bubbles.
-const SCALES: [(usize, f32); 3] = [(5, 1.0), (12, 0.7), (29, 0.4)];
+const SCALES: [(usize, f32); 3] = [(20, 1.0), (48, 0.7), (116, 0.4)];
 
 /// Waves of the patches across the tile, fewest and most, and how many of them.
 const PATCHES: (f32, f32, usize) = (2.0, 7.0, 40);
@@ -131,14 +134,16 @@ mod tests {
     fn samples_in_a_row_deviate_as_the_shader_takes_them_to() {
         let smoothstep = |t: f32| t * t * (3.0 - 2.0 * t);
         let wgsl = include_str!("foam.wgsl");
-        assert!(wgsl.contains("(1.0 + min(length(streak) / 0.056, 1.0))"));
-        let bubbles = |length: f32| 1.0 + (length / 0.056).min(1.0);
+        assert!(wgsl.contains("(1.0 + min(length(streak) / 0.014, 1.0))"));
+        let bubbles = |length: f32| 1.0 + (length / 0.014).min(1.0);
         assert!(wgsl.contains("(1.0 + 1.25 * smoothstep(0.0, 0.16, length(band)))"));
         let patches = |length: f32| 1.0 + 1.25 * smoothstep((length / 0.16).min(1.0));
-        for (variates, assumed) in
-            [(normal(&froth()), &bubbles as &dyn Fn(f32) -> f32), (normal(&super::patches()), &patches)]
-        {
-            for length in [0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.16, 0.2, 0.22] {
+        // Bubbles are smaller than patches.
+        for (variates, unit, assumed) in [
+            (normal(&froth()), PATTERNS.recip(), &bubbles as &dyn Fn(f32) -> f32),
+            (normal(&super::patches()), 1.0, &patches),
+        ] {
+            for length in [0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.16, 0.2, 0.22].map(|length| length * unit) {
                 let turns = (0..8).map(|turn| Vec2::from_angle(turn as f32 * 0.8) * length);
                 let measured = turns.map(|step| widened(&variates, step)).sum::<f32>() / 8.0;
                 let error = assumed(length) / measured - 1.0;

@@ -6,7 +6,7 @@
 #import freshet::surface::types
 
 // Time over which the current draws bubbles out to streaks, and patches to bands, s.
-const STREAK: f32 = 0.22;
+const STREAK: f32 = 0.13;
 const BAND: f32 = 4.5;
 // Deviation of the variate over which foam turns from none to closed at a wall of bubbles.
 const SOFTNESS: f32 = 0.35;
@@ -14,7 +14,7 @@ const SOFTNESS: f32 = 0.35;
 // Share of the variance of patches that foam gathers to. They are larger than bubbles and turned, and so hide that the tile
 // repeats. The same matrix is in `write.rs`.
 const PATCHES: f32 = 0.4;
-const PATCH: mat2x2<f32> = mat2x2<f32>(vec2(0.1171, 0.0603), vec2(-0.0603, 0.1171));
+const PATCH: mat2x2<f32> = mat2x2<f32>(vec2(0.4684, 0.2412), vec2(-0.2412, 0.4684));
 
 fn texel(at: vec2<f32>, footprint: Footprint) -> vec4<f32> {
     return textureSampleGrad(foam, detail_sampler, at, footprint.x, footprint.y);
@@ -42,7 +42,7 @@ fn froth(place: vec2<f32>, current: vec2<f32>, footprint: Footprint) -> vec2<f32
     let patches = drawn_out(PATCH * place * scale - surface.foam_drift.zw, band, turned).zw;
     // The mean of four samples deviates less the less they know of each other: half as much at last, and patches, which are
     // waves, less still. `foam.rs` measures it.
-    let bubble = bubbles.x * (1.0 + min(length(streak) / 0.056, 1.0));
+    let bubble = bubbles.x * (1.0 + min(length(streak) / 0.014, 1.0));
     let gathered = patches.x * (1.0 + 1.25 * smoothstep(0.0, 0.16, length(band)));
     return vec2(
         sqrt(1.0 - PATCHES) * bubble + sqrt(PATCHES) * gathered,

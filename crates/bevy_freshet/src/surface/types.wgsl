@@ -61,8 +61,8 @@ struct Surface {
 
     foam_albedo: vec3<f32>,
     foam_amount: f32,
-    foam_scale: f32,                // patterns per metre
-    foam_drift: vec4<f32>,          // shift of bubbles (xy) and patches (zw) by the uniform current, patterns
+    foam_scale: f32,                // tiles per metre
+    foam_drift: vec4<f32>,          // shift of bubbles (xy) and patches (zw) by the uniform current, tiles
 
     // Stylised light.
     tint: vec3<f32>,                // strength times colour of the tinted highlight, units: 1/sr

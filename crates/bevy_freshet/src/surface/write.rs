@@ -1,6 +1,7 @@
 //! Fills the numbers and textures of every surface, every frame.
 use super::{
     SurfaceView, WaterSurface,
+    foam::PATTERNS,
     gpu::GpuSurface,
     ice::write_ice,
     material::SurfaceMaterial,
@@ -253,14 +254,15 @@ fn write_field(gpu: &mut GpuSurface, water: &ResolvedWater, window: &FieldWindow
 }
 
 /// Patterns of foam's patches from those of its bubbles, as in `foam.wgsl`.
-const FOAM_PATCH: DMat2 = DMat2::from_cols(DVec2::new(0.1171, 0.0603), DVec2::new(-0.0603, 0.1171));
+const FOAM_PATCH: DMat2 = DMat2::from_cols(DVec2::new(0.4684, 0.2412), DVec2::new(-0.2412, 0.4684));
 
 fn write_foam(gpu: &mut GpuSurface, entity: Entity, foam: &WaterFoam, ripples: &Ripples, reported: &mut Reported) {
     let usable = WaterFoam::default();
     gpu.foam_amount = reported.clamp(entity, "WaterFoam::amount", foam.amount, 0.0..=1.0, usable.amount);
     let size = reported.clamp(entity, "WaterFoam::pattern_size", foam.pattern_size, 0.05..=100.0, usable.pattern_size);
-    gpu.foam_scale = size.recip();
-    let drift = ripples.carried / f64::from(size);
+    let tile = size * PATTERNS;
+    gpu.foam_scale = tile.recip();
+    let drift = ripples.carried / f64::from(tile);
     let [bubbles, patches] = [drift, FOAM_PATCH * drift].map(|shift| shift.fract_gl().as_vec2());
     gpu.foam_drift = bubbles.extend(patches.x).extend(patches.y);
     let (albedo, fallback) = (foam.albedo.to_vec3(), usable.albedo.to_vec3());
