@@ -7,30 +7,13 @@ use bevy::{
     light::Cascades,
     pbr::ViewLightEntities,
     prelude::*,
-    render::{
-        camera::SortedCameras, extract_component::ExtractComponent, sync_component::SyncComponent,
-        sync_world::MainEntity,
-    },
+    render::{camera::SortedCameras, extract_component::ExtractComponent, sync_world::MainEntity},
 };
 
 /// Marks a mirror camera whose shadow maps are its viewer's.
-#[derive(Component, Clone, Copy, Debug, PartialEq)]
+#[derive(Component, ExtractComponent, Clone, Copy, Debug, PartialEq)]
 pub(super) struct SharesShadows {
     pub viewer: Entity,
-}
-
-impl SyncComponent for SharesShadows {
-    type Target = Self;
-}
-
-impl ExtractComponent for SharesShadows {
-    type QueryData = &'static Self;
-    type QueryFilter = ();
-    type Out = Self;
-
-    fn extract_component(shares: &Self) -> Option<Self> {
-        Some(*shares)
-    }
 }
 
 /// Gives mirrors the cascades of their viewers.
