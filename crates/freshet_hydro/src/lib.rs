@@ -11,6 +11,7 @@ pub mod ice;
 pub mod noise;
 pub mod optics;
 pub mod rain;
+pub mod shallow_water;
 pub mod silhouette;
 pub mod voxels;
 pub mod waves;

@@ -1,0 +1,105 @@
+//! The clock: as many steps as the fastest signal asks for.
+use super::{ShallowWater, step, strip::Numbers};
+use crate::waves::GRAVITY;
+use std::mem;
+
+/// What [`ShallowWater::advance`] did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Advance {
+    /// Steps taken.
+    pub steps: u32,
+    /// Time simulated, s.
+    pub time: f64,
+    /// Time asked for that is left, s: above zero if the steps did not suffice.
+    pub left: f64,
+}
+
+impl ShallowWater {
+    /// Simulates `duration` (s) in at most `max_steps` steps. A duration that is not finite or not above zero does nothing.
+    pub fn advance(&mut self, duration: f64, max_steps: u32) -> Advance {
+        let mut advance = Advance::default();
+        if !(duration.is_finite() && duration > 0.0) {
+            return advance;
+        }
+        while advance.steps < max_steps && duration - advance.time > duration * 1e-9 {
+            advance.time += self.step(duration - advance.time);
+            advance.steps += 1;
+        }
+        advance.left = (duration - advance.time).max(0.0);
+        if advance.left <= duration * 1e-9 {
+            advance.left = 0.0;
+        }
+        advance
+    }
+
+    /// Takes one step of at most `most` (s), which the Courant number may shorten. Returns its duration, s.
+    pub fn step(&mut self, most: f64) -> f64 {
+        if !(most.is_finite() && most > 0.0) {
+            return 0.0;
+        }
+        let entering = self.edges.update(&self.bed, self.cell_size, self.time);
+        let rain = self.rain.at(self.time).max(0.0);
+        self.update_rates();
+        let dt = self.choose_dt(most, entering, rain);
+        let numbers = Numbers {
+            dt,
+            ratio: dt / self.cell_size,
+            drag: GRAVITY * self.manning * self.manning,
+            rain,
+        };
+        let around = step::Surround {
+            size: self.size,
+            bed: &self.bed,
+            crests: self.crests.as_ref(),
+            edges: &self.edges.cells,
+            periodic: self.edges.periodic,
+            sources: &self.rates,
+        };
+        let tally = step::step(&mut self.next, &self.now, &around, numbers, &mut self.rows);
+        mem::swap(&mut self.now, &mut self.next);
+        self.fastest = tally.fastest;
+        self.time += f64::from(dt);
+        self.book(&tally, numbers);
+        f64::from(dt)
+    }
+
+    /// Δt, s: the Courant number's, at most `most`, and such that what is left of `most` needs no tiny step.
+    fn choose_dt(&self, most: f64, entering: f32, rain: f32) -> f32 {
+        let signal = self.courant * self.cell_size / self.fastest.max(entering).max(1e-20);
+        // Water that is added makes waves: of speed √(g s Δt) after Δt at the rate s.
+        let rate = self.rates.iter().fold(rain, |most, &rate| most.max(rate + rain));
+        let reach = self.courant * self.cell_size;
+        let added = libm::cbrtf(reach * reach / (GRAVITY * rate.max(1e-20)));
+        let longest = f64::from(signal.min(added));
+        let steps = (most / longest).ceil().max(1.0);
+        if steps > 2.0 { longest as f32 } else { (most / steps) as f32 }
+    }
+
+    /// Sets the rates of the point sources at this time, in m/s for every cell.
+    fn update_rates(&mut self) {
+        let area = self.cell_size * self.cell_size;
+        for (_, footprint) in &self.sources {
+            for &(cell, _) in &footprint.0 {
+                self.rates[cell] = 0.0;
+            }
+        }
+        for (source, footprint) in &self.sources {
+            let rate = source.rate.at(self.time);
+            for &(cell, share) in &footprint.0 {
+                self.rates[cell] += rate * share / area;
+            }
+        }
+    }
+
+    fn book(&mut self, tally: &step::Tally, numbers: Numbers) {
+        let cell = f64::from(self.cell_size);
+        for (left, through) in self.balance.left.iter_mut().zip(tally.left) {
+            *left += f64::from(numbers.dt) * cell * through;
+        }
+        let rain = f64::from(numbers.dt * numbers.rain) * self.bed.len() as f64;
+        self.balance.rain += rain * cell * cell;
+        if !self.rates.is_empty() {
+            self.balance.sources += (tally.given - rain) * cell * cell;
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Cases with a known answer, for any backend.
+
+pub mod basin;
+pub mod dam_break;
+pub mod rest;
+
+use freshet_hydro::{grid::Grid, shallow_water::ShallowWater};
+use glam::{UVec2, Vec2};
+
+/// Simulates the water for a duration, s.
+pub type Run<'a> = &'a mut dyn FnMut(&mut ShallowWater, f64);
+
+/// Dry land of columns and rows, whose bed (m) is a function of local (x, z).
+pub fn land(columns: u32, rows: u32, cell_size: f32, bed: impl Fn(f64, f64) -> f64) -> ShallowWater {
+    ShallowWater::new(&bed_grid(columns, rows, cell_size, bed)).expect("a finite bed")
+}
+
+/// The bed of [`land`].
+pub fn bed_grid(columns: u32, rows: u32, cell_size: f32, bed: impl Fn(f64, f64) -> f64) -> Grid<f32> {
+    let empty = Grid::new(UVec2::new(columns, rows), cell_size, vec![(); (columns * rows) as usize]).expect("a valid shape");
+    let value = |cell| {
+        let at = centre(&empty, cell);
+        bed(at[0], at[1]) as f32
+    };
+    Grid::from_fn(empty.size(), cell_size, value).expect("a valid shape")
+}
+
+fn centre<T>(grid: &Grid<T>, cell: UVec2) -> [f64; 2] {
+    let middle = [grid.size().x, grid.size().y].map(|count| f64::from(count) / 2.0);
+    let size = f64::from(grid.cell_size());
+    [(f64::from(cell.x) + 0.5 - middle[0]) * size, (f64::from(cell.y) + 0.5 - middle[1]) * size]
+}
+
+/// Local (x, z) of the middle of cell `index`, m.
+pub fn place(water: &ShallowWater, index: usize) -> [f64; 2] {
+    let size = water.size();
+    let cell = [index as u32 % size.x, index as u32 / size.x];
+    let middle = [size.x, size.y].map(|count| f64::from(count) / 2.0);
+    let side = f64::from(water.cell_size());
+    [(f64::from(cell[0]) + 0.5 - middle[0]) * side, (f64::from(cell[1]) + 0.5 - middle[1]) * side]
+}
+
+/// Largest speed of any cell, m/s.
+pub fn fastest(water: &ShallowWater) -> f32 {
+    (0..water.depths().len()).map(|index| water.velocity(index).length()).fold(0.0, f32::max)
+}
+
+/// Still water where x and z are in metres.
+pub fn still(depth: f64) -> (f32, Vec2) {
+    (depth as f32, Vec2::ZERO)
+}
