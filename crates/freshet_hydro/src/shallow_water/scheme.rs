@@ -19,11 +19,23 @@ pub(super) fn sane(value: f32, limit: f32) -> f32 {
     if value.abs() < limit { value } else { 0.0 }
 }
 
+/// The larger number, `b` if they are not ordered: one instruction, which `f32::max` is not.
+#[inline(always)]
+pub(super) fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The smaller number, `b` if they are not ordered.
+#[inline(always)]
+pub(super) fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
 /// What turns a discharge q (m²/s) in water of `depth` h into its speed: 1/h, and 2h/(h² + ε²) below [`FILM`] ε.
 #[inline(always)]
 pub(super) fn per_depth(depth: f32) -> f32 {
     let square = depth * depth;
-    2.0 * depth / (square + square.max(FILM * FILM))
+    2.0 * depth / (square + max(square, FILM * FILM))
 }
 
 /// Difference across a cell from the differences to its two neighbours, limited so that neither face overshoots the neighbour
@@ -31,9 +43,10 @@ pub(super) fn per_depth(depth: f32) -> f32 {
 #[inline(always)]
 pub(super) fn limited(before: f32, after: f32) -> f32 {
     let central = 0.5 * (before + after);
-    let steepest = 2.0 * before.abs().min(after.abs());
-    let size = central.abs().min(steepest);
-    if before * after > 0.0 { size.copysign(central) } else { 0.0 }
+    let (a, b) = (2.0 * before, 2.0 * after);
+    let rising = max(min(min(a, b), central), 0.0);
+    let falling = min(max(max(a, b), central), 0.0);
+    rising + falling
 }
 
 /// Depth, level, normal and tangential velocity at one side of a face.
@@ -64,24 +77,24 @@ pub(super) struct Flux {
 /// 2004) with the HLLC solver (Toro 2001, with its two-rarefaction speeds).
 #[inline(always)]
 pub(super) fn riemann(l: Side, r: Side, crest: f32) -> Flux {
-    let sill = (l.level - l.depth).max(r.level - r.depth).max(crest);
-    let hl = (l.level - sill).max(0.0);
-    let hr = (r.level - sill).max(0.0);
+    let sill = max(max(l.level - l.depth, r.level - r.depth), crest);
+    let hl = max(l.level - sill, 0.0);
+    let hr = max(r.level - sill, 0.0);
     let cl = (GRAVITY * hl).sqrt();
     let cr = (GRAVITY * hr).sqrt();
     // A dry side moves with the front that would run over it: u + 2c.
     let ul = if hl > 0.0 { l.normal } else { r.normal - 2.0 * cr };
     let ur = if hr > 0.0 { r.normal } else { l.normal + 2.0 * cl };
     let middle_speed = 0.5 * (ul + ur) + (cl - cr);
-    let middle_celerity = (0.5 * (cl + cr) + 0.25 * (ul - ur)).max(0.0);
+    let middle_celerity = max(0.5 * (cl + cr) + 0.25 * (ul - ur), 0.0);
     // Speeds of the heads and tails of the two waves.
     let (head_l, tail_l) = (ul - cl, middle_speed - middle_celerity);
     let (tail_r, head_r) = (middle_speed + middle_celerity, ur + cr);
-    let sl = head_l.min(tail_l).min(0.0);
-    let sr = head_r.max(tail_r).max(0.0);
+    let sl = min(min(head_l, tail_l), 0.0);
+    let sr = max(max(head_r, tail_r), 0.0);
     let ql = hl * ul;
     let qr = hr * ur;
-    let per_width = 1.0 / (sr - sl).max(1e-20);
+    let per_width = 1.0 / max(sr - sl, 1e-20);
     let both = sl * sr;
     let pressure = 0.5 * GRAVITY * ((hr - hl) * (hr + hl));
     let mass = (sr * ql - sl * qr + both * (hr - hl)) * per_width;
@@ -91,7 +104,7 @@ pub(super) fn riemann(l: Side, r: Side, crest: f32) -> Flux {
     let fan_l = head_l < 0.0 && tail_l > 0.0;
     let fan_r = head_r > 0.0 && tail_r < 0.0;
     let speed = if fan_l { ul + 2.0 * cl } else { ur - 2.0 * cr } * (1.0 / 3.0);
-    let celerity = if fan_l { speed.max(0.0) } else { (-speed).max(0.0) };
+    let celerity = max(if fan_l { speed } else { -speed }, 0.0);
     let depth = celerity * celerity * (1.0 / GRAVITY);
     let fan_mass = depth * if fan_l { celerity } else { -celerity };
     let fan_before = depth * celerity * celerity + 0.5 * GRAVITY * ((depth - hl) * (depth + hl));
@@ -107,14 +120,14 @@ pub(super) fn riemann(l: Side, r: Side, crest: f32) -> Flux {
 #[inline(always)]
 pub(super) fn wall(depth: f32, towards: f32) -> f32 {
     let celerity = (GRAVITY * depth).sqrt();
-    let speed = (celerity - towards).max(celerity + 0.5 * towards).max(0.0);
+    let speed = max(max(celerity - towards, celerity + 0.5 * towards), 0.0);
     depth * towards * (towards + speed)
 }
 
 /// h^(−1/3) for h > 0, to the last bits: a guess from the exponent, then Newton.
 #[inline(always)]
 pub(super) fn inverse_cube_root(h: f32) -> f32 {
-    let mut y = f32::from_bits(0x54a2_fa8c - h.to_bits() / 3);
+    let mut y = f32::from_bits(0x54a2_fa8c_u32.wrapping_sub(h.to_bits() / 3));
     for _ in 0..3 {
         y *= 4.0 / 3.0 - (1.0 / 3.0) * h * (y * y * y);
     }
@@ -126,7 +139,7 @@ pub(super) fn inverse_cube_root(h: f32) -> f32 {
 /// Fully implicit: the root of q = q₀ − Δt g n² |q| q h^(−7/3), so that uniform flow is the same for every Δt.
 #[inline(always)]
 pub(super) fn kept_by_friction(depth: f32, discharge: f32, dt: f32, drag: f32) -> f32 {
-    let root = inverse_cube_root(depth.max(1e-6));
+    let root = inverse_cube_root(max(depth, 1e-6));
     let square = root * root;
     let rate = drag * (square * square * square * root) * discharge * dt;
     2.0 / (1.0 + (1.0 + 4.0 * rate).sqrt())

@@ -2,12 +2,14 @@
 use super::{
     edge::{self, DomainSide, EdgeCell},
     scheme::Flux,
-    strip::{COLUMNS, Cells, Faces, Fluxes, HALO, Numbers, SPAN, StateRow, StateRowMut, Surroundings, Values, update},
+    strip::{COLUMNS, Cells, Faces, Fluxes, HALO, Numbers, SPAN, StateRows, Surroundings, Updated, Values},
 };
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Rows of a band. The same for every number of threads, so that sums over a band are too.
-pub(super) const BAND: usize = 32;
+pub(super) const BAND: usize = 64;
 
 /// The conserved numbers of all cells, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,22 +55,29 @@ pub(super) struct Tally {
 /// Rows that a band works on.
 #[derive(Clone)]
 pub(super) struct Rows {
-    given: Values,
+    /// The old state, the bed and the sources of the row at hand.
+    old: StateRows,
+    bed: Values,
+    sources: Values,
     cells: [Cells; 3],
     faces: [Faces; 2],
     x: [Fluxes; 2],
     z: [Fluxes; 2],
+    updated: Updated,
     tally: Tally,
 }
 
 impl Default for Rows {
     fn default() -> Self {
         Self {
-            given: [0.0; SPAN],
+            old: StateRows::default(),
+            bed: [0.0; SPAN],
+            sources: [0.0; SPAN],
             cells: Default::default(),
             faces: Default::default(),
             x: Default::default(),
             z: Default::default(),
+            updated: Updated::default(),
             tally: Tally::default(),
         }
     }
@@ -79,20 +88,41 @@ impl State {
         let zeros = || vec![0.0; count];
         Self { depth: zeros(), carry: zeros(), discharge_x: zeros(), discharge_z: zeros() }
     }
+}
 
-    fn row(&self, from: usize, to: usize) -> StateRow<'_> {
-        StateRow {
-            depth: &self.depth[from..to],
-            carry: &self.carry[from..to],
-            discharge_x: &self.discharge_x[from..to],
-            discharge_z: &self.discharge_z[from..to],
-        }
+/// Part of a state that a band writes.
+struct StateMut<'a> {
+    depth: &'a mut [f32],
+    carry: &'a mut [f32],
+    discharge_x: &'a mut [f32],
+    discharge_z: &'a mut [f32],
+}
+
+impl StateRows {
+    /// Reads a part of a row of `state`, to cell `at` and following.
+    #[inline(always)]
+    fn read(&mut self, state: &State, part: Range<usize>, at: usize) {
+        let to = at..at + part.len();
+        self.depth[to.clone()].copy_from_slice(&state.depth[part.clone()]);
+        self.carry[to.clone()].copy_from_slice(&state.carry[part.clone()]);
+        self.discharge_x[to.clone()].copy_from_slice(&state.discharge_x[part.clone()]);
+        self.discharge_z[to].copy_from_slice(&state.discharge_z[part]);
+    }
+
+    /// Writes the strip to a part of a row of `state`.
+    #[inline(always)]
+    fn write(&self, state: &mut StateMut, part: Range<usize>) {
+        let from = HALO..HALO + part.len();
+        state.depth[part.clone()].copy_from_slice(&self.depth[from.clone()]);
+        state.carry[part.clone()].copy_from_slice(&self.carry[from.clone()]);
+        state.discharge_x[part.clone()].copy_from_slice(&self.discharge_x[from.clone()]);
+        state.discharge_z[part].copy_from_slice(&self.discharge_z[from]);
     }
 }
 
 /// Takes the step `numbers` from `old` to `new`.
 pub(super) fn step(new: &mut State, old: &State, around: &Surround, numbers: Numbers, rows: &mut [Rows]) -> Tally {
-    let arch = pulp::Arch::new();
+    let arch = Arch::new();
     let chunk = BAND * around.size.0;
     let bands = (
         new.depth.par_chunks_mut(chunk),
@@ -102,8 +132,8 @@ pub(super) fn step(new: &mut State, old: &State, around: &Surround, numbers: Num
         rows.par_iter_mut(),
     );
     bands.into_par_iter().enumerate().for_each(|(band, (depth, carry, discharge_x, discharge_z, rows))| {
-        let mut new = StateRowMut { depth, carry, discharge_x, discharge_z };
-        arch.dispatch(|| rows.step(&mut new, old, around, numbers, band * BAND));
+        let new = StateMut { depth, carry, discharge_x, discharge_z };
+        arch.dispatch(Band { rows, new, old, around, numbers, first: band * BAND });
     });
     let mut total = Tally::default();
     for rows in rows.iter() {
@@ -116,9 +146,28 @@ pub(super) fn step(new: &mut State, old: &State, around: &Surround, numbers: Num
     total
 }
 
+/// The work on one band, compiled once for every set of vector instructions.
+struct Band<'a> {
+    rows: &'a mut Rows,
+    new: StateMut<'a>,
+    old: &'a State,
+    around: &'a Surround<'a>,
+    numbers: Numbers,
+    first: usize,
+}
+
+impl WithSimd for Band<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, _: S) {
+        self.rows.step(&mut self.new, self.old, self.around, self.numbers, self.first);
+    }
+}
+
 impl Rows {
     #[inline(always)]
-    fn step(&mut self, new: &mut StateRowMut, old: &State, around: &Surround, numbers: Numbers, first: usize) {
+    fn step(&mut self, new: &mut StateMut, old: &State, around: &Surround, numbers: Numbers, first: usize) {
         self.tally = Tally::default();
         let columns = around.size.0;
         for west in (0..columns).step_by(COLUMNS) {
@@ -130,12 +179,12 @@ impl Rows {
     /// The rows `first` and following of one strip. Each row of cells that is read makes one more row of fluxes and one more
     /// row of the new state.
     #[inline(always)]
-    fn step_strip(&mut self, new: &mut StateRowMut, strip: &Strip, numbers: Numbers, first: usize) {
+    fn step_strip(&mut self, new: &mut StateMut, strip: &Strip, numbers: Numbers, first: usize) {
         let columns = strip.around.size.0;
         let (start, count) = (first as isize, (new.depth.len() / columns) as isize);
         let halo = HALO as isize;
         for read in start - halo..start + count + halo {
-            strip.load(&mut self.cells[slot(read, 3)], read);
+            strip.load(&mut self.cells[slot(read, 3)], &mut self.old, &mut self.bed, read);
             let row = read - 1;
             if row < start - 1 {
                 continue;
@@ -160,35 +209,30 @@ impl Rows {
 
     /// Writes row `row` of the domain, row `at` of the band.
     #[inline(always)]
-    fn update(&mut self, new: &mut StateRowMut, strip: &Strip, numbers: Numbers, row: isize, at: usize) {
+    fn update(&mut self, new: &mut StateMut, strip: &Strip, numbers: Numbers, row: isize, at: usize) {
         let columns = strip.around.size.0;
-        let (here, to) = (at * columns + strip.west, at * columns + strip.west + strip.width);
         let from = row as usize * columns + strip.west;
-        let sources = strip.around.sources;
+        let here = from..from + strip.width;
+        self.old.read(strip.old, here.clone(), HALO);
+        let sources = (!strip.around.sources.is_empty()).then(|| {
+            self.sources[HALO..HALO + strip.width].copy_from_slice(&strip.around.sources[here]);
+            &self.sources
+        });
         let (x, north, south) = (&self.x[slot(row, 2)], &self.z[slot(row, 2)], &self.z[slot(row + 1, 2)]);
-        let faces = &self.faces[slot(row, 2)];
-        let surroundings = Surroundings {
-            x,
-            north,
-            south,
-            push_x: &faces.push_x,
-            push_z: &faces.push_z,
-            sources: if sources.is_empty() { &[] } else { &sources[from..from + strip.width] },
-        };
-        let mut row_new = StateRowMut {
-            depth: &mut new.depth[here..to],
-            carry: &mut new.carry[here..to],
-            discharge_x: &mut new.discharge_x[here..to],
-            discharge_z: &mut new.discharge_z[here..to],
-        };
-        let old = strip.old.row(from, from + strip.width);
-        let fastest = update(&mut row_new, old, &surroundings, numbers, &mut self.given);
-        self.tally.fastest = self.tally.fastest.max(fastest);
-        if !sources.is_empty() {
-            self.tally.given += self.given[..strip.width].iter().map(|&given| f64::from(given)).sum::<f64>();
+        let around = Surroundings { x, north, south, faces: &self.faces[slot(row, 2)], sources };
+        self.updated.update(&self.old, &around, numbers, strip.width);
+        let to = at * columns + strip.west;
+        self.updated.state.write(new, to..to + strip.width);
+        self.tally.fastest = self.tally.fastest.max(self.updated.fastest(strip.width));
+        if sources.is_some() {
+            self.tally.given += total(&self.updated.given[HALO..HALO + strip.width]);
         }
         strip.tally(&mut self.tally.left, x, north, south, row);
     }
+}
+
+fn total(values: &[f32]) -> f64 {
+    values.iter().map(|&value| f64::from(value)).sum()
 }
 
 fn slot(row: isize, slots: isize) -> usize {
@@ -206,43 +250,45 @@ struct Strip<'a> {
 impl Strip<'_> {
     /// Reads the row `row`, which may lie outside the domain, with its halos.
     #[inline(always)]
-    fn load(&self, cells: &mut Cells, row: isize) {
+    fn load(&self, cells: &mut Cells, state: &mut StateRows, bed: &mut Values, row: isize) {
         let (columns, rows) = self.around.size;
         let inside = within(row, rows, self.around.periodic.1);
         let base = inside * columns;
-        let west = self.west.saturating_sub(HALO);
-        let east = (self.west + self.width + HALO).min(columns);
+        let (west, east) = (self.west.saturating_sub(HALO), (self.west + self.width + HALO).min(columns));
         let at = HALO + west - self.west;
-        cells.load(at, self.old.row(base + west, base + east), &self.around.bed[base + west..base + east]);
-        self.load_beyond(cells, base, inside);
-        if !self.around.periodic.1 && (row < 0 || row >= rows as isize) {
-            let side = if row < 0 { DomainSide::North } else { DomainSide::South };
-            let edge = &self.around.edges[side as usize];
-            for column in west..east {
-                if edge[column] == EdgeCell::Wall {
-                    cells.v[HALO + column - self.west] *= -1.0;
-                }
-            }
+        state.read(self.old, base + west..base + east, at);
+        bed[at..at + east - west].copy_from_slice(&self.around.bed[base + west..base + east]);
+        let last = self.width + 2 * HALO;
+        for k in (0..at).chain(at + east - west..last) {
+            let column = within((self.west + k) as isize - HALO as isize, columns, self.around.periodic.0);
+            state.read(self.old, base + column..base + column + 1, k);
+            bed[k] = self.around.bed[base + column];
         }
+        cells.load(state, bed, (0, last));
+        self.mirror_at_walls(cells, row, inside);
     }
 
-    /// Fills the halo cells west and east of the domain.
+    /// Turns back the velocity of halo cells behind walls.
     #[inline(always)]
-    fn load_beyond(&self, cells: &mut Cells, base: usize, row: usize) {
-        let columns = self.around.size.0;
-        let from = self.west as isize - HALO as isize;
-        for k in 0..self.width + 2 * HALO {
-            let column = from + k as isize;
-            if (0..columns as isize).contains(&column) {
-                continue;
+    fn mirror_at_walls(&self, cells: &mut Cells, row: isize, inside: usize) {
+        let (columns, rows) = self.around.size;
+        let edges = self.around.edges;
+        if !self.around.periodic.1 && (row < 0 || row >= rows as isize) {
+            let side = if row < 0 { DomainSide::North } else { DomainSide::South };
+            let part = &edges[side as usize][self.west..self.west + self.width];
+            for (v, _) in cells.v[HALO..].iter_mut().zip(part).filter(|(_, edge)| **edge == EdgeCell::Wall) {
+                *v = -*v;
             }
-            let inside = within(column, columns, self.around.periodic.0);
-            let cell = base + inside;
-            cells.load(k, self.old.row(cell, cell + 1), &self.around.bed[cell..cell + 1]);
-            let side = if column < 0 { DomainSide::West } else { DomainSide::East };
-            if !self.around.periodic.0 && self.around.edges[side as usize][row] == EdgeCell::Wall {
-                cells.u[k] *= -1.0;
-            }
+        }
+        if self.around.periodic.0 {
+            return;
+        }
+        if self.west == 0 && edges[DomainSide::West as usize][inside] == EdgeCell::Wall {
+            cells.u[..HALO].iter_mut().for_each(|u| *u = -*u);
+        }
+        let east = HALO + self.width;
+        if self.west + self.width == columns && edges[DomainSide::East as usize][inside] == EdgeCell::Wall {
+            cells.u[east..east + HALO].iter_mut().for_each(|u| *u = -*u);
         }
     }
 
@@ -318,7 +364,7 @@ impl Strip<'_> {
             }
         }
         if !self.around.periodic.1 {
-            let sum = |fluxes: &Fluxes| fluxes.mass[HALO..HALO + self.width].iter().map(|&mass| f64::from(mass)).sum::<f64>();
+            let sum = |fluxes: &Fluxes| total(&fluxes.mass[HALO..HALO + self.width]);
             if row == 0 {
                 left[DomainSide::North as usize] -= sum(north);
             }

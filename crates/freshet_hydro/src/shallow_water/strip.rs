@@ -1,16 +1,31 @@
 //! Rows of a strip of columns: the scheme, one operation after the other along whole rows, so that the compiler turns each
 //! loop into vector instructions.
-use super::scheme::{DEEPEST, FASTEST, FILM, Flux, Side, kept_by_friction, limited, per_depth, riemann, sane, wall};
+use super::scheme::{DEEPEST, FASTEST, FILM, Flux, Side, kept_by_friction, limited, max, per_depth, riemann, sane, wall};
 use crate::waves::GRAVITY;
 
 /// Cells beyond a strip that its cells need.
 pub(super) const HALO: usize = 2;
 /// Most columns of a strip, so that its rows stay in the processor's nearest cache.
-pub(super) const COLUMNS: usize = 256;
-/// Values in a row: the strip and its halos.
-pub(super) const SPAN: usize = COLUMNS + 2 * HALO;
+pub(super) const COLUMNS: usize = 512;
+/// Values in a row: the strip, its halos, and room for the last block.
+pub(super) const SPAN: usize = COLUMNS + 2 * LANES;
+/// Cells that a loop takes at once. Their number is fixed, so that the compiler knows that blocks do not overlap.
+const LANES: usize = 16;
 
 pub(super) type Values = [f32; SPAN];
+type Block = [f32; LANES];
+
+/// The block of a row that begins at `at`.
+#[inline(always)]
+fn block(values: &Values, at: usize) -> &Block {
+    values[at..].first_chunk().expect("rows have room for the last block")
+}
+
+/// The block of a row that begins at `at`, for writing.
+#[inline(always)]
+fn block_mut(values: &mut Values, at: usize) -> &mut Block {
+    values[at..].first_chunk_mut().expect("rows have room for the last block")
+}
 
 /// Rows of depth (m), level (m) and the velocity (m/s) along and across the row.
 #[derive(Clone)]
@@ -52,24 +67,17 @@ pub(super) struct Faces {
     pub push_z: Values,
 }
 
-/// One row of the four conserved numbers of a state.
-pub(super) struct StateRow<'a> {
+/// Rows of the four conserved numbers of a state.
+#[derive(Clone)]
+pub(super) struct StateRows {
     /// Depth, m.
-    pub depth: &'a [f32],
+    pub depth: Values,
     /// What the depth cannot hold: rounding, and volume that left twice, m.
-    pub carry: &'a [f32],
+    pub carry: Values,
     /// Discharge along x, m²/s.
-    pub discharge_x: &'a [f32],
+    pub discharge_x: Values,
     /// Discharge along z, m²/s.
-    pub discharge_z: &'a [f32],
-}
-
-/// One row of a state that is being written.
-pub(super) struct StateRowMut<'a> {
-    pub depth: &'a mut [f32],
-    pub carry: &'a mut [f32],
-    pub discharge_x: &'a mut [f32],
-    pub discharge_z: &'a mut [f32],
+    pub discharge_z: Values,
 }
 
 /// Numbers of one step.
@@ -88,6 +96,12 @@ pub(super) struct Numbers {
 impl Default for Cells {
     fn default() -> Self {
         Self { depth: [0.0; SPAN], level: [0.0; SPAN], u: [0.0; SPAN], v: [0.0; SPAN] }
+    }
+}
+
+impl Default for StateRows {
+    fn default() -> Self {
+        Self { depth: [0.0; SPAN], carry: [0.0; SPAN], discharge_x: [0.0; SPAN], discharge_z: [0.0; SPAN] }
     }
 }
 
@@ -117,6 +131,22 @@ impl Default for Faces {
 }
 
 impl Sides {
+    /// Depth, level, normal and tangential velocity of a block.
+    #[inline(always)]
+    fn block(&self, at: usize) -> (&Block, &Block, &Block, &Block) {
+        (block(&self.depth, at), block(&self.level, at), block(&self.normal, at), block(&self.tangential, at))
+    }
+
+    #[inline(always)]
+    fn block_mut(&mut self, at: usize) -> (&mut Block, &mut Block, &mut Block, &mut Block) {
+        (
+            block_mut(&mut self.depth, at),
+            block_mut(&mut self.level, at),
+            block_mut(&mut self.normal, at),
+            block_mut(&mut self.tangential, at),
+        )
+    }
+
     pub fn get(&self, k: usize) -> Side {
         Side {
             depth: self.depth[k],
@@ -137,20 +167,22 @@ impl Fluxes {
 }
 
 impl Cells {
-    /// Depth, level and velocity from a row of the state, written from `at` on.
+    /// Depth, level and velocity of the cells `range` from a row of the state over its `bed`.
     #[inline(always)]
-    pub fn load(&mut self, at: usize, state: StateRow, bed: &[f32]) {
-        let n = bed.len();
-        let (h, qx, qz) = (&state.depth[..n], &state.discharge_x[..n], &state.discharge_z[..n]);
-        let (depth, level) = (&mut self.depth[at..at + n], &mut self.level[at..at + n]);
-        let (u, v) = (&mut self.u[at..at + n], &mut self.v[at..at + n]);
-        for k in 0..n {
-            let d = sane(h[k], DEEPEST).max(0.0);
-            let factor = per_depth(d);
-            depth[k] = d;
-            level[k] = d + bed[k];
-            u[k] = sane(qx[k] * factor, FASTEST);
-            v[k] = sane(qz[k] * factor, FASTEST);
+    pub fn load(&mut self, state: &StateRows, bed: &Values, range: (usize, usize)) {
+        for at in (range.0..range.1).step_by(LANES) {
+            let (h, z) = (block(&state.depth, at), block(bed, at));
+            let (qx, qz) = (block(&state.discharge_x, at), block(&state.discharge_z, at));
+            let (depth, level) = (block_mut(&mut self.depth, at), block_mut(&mut self.level, at));
+            let (u, v) = (block_mut(&mut self.u, at), block_mut(&mut self.v, at));
+            for k in 0..LANES {
+                let d = max(sane(h[k], DEEPEST), 0.0);
+                let factor = per_depth(d);
+                depth[k] = d;
+                level[k] = d + z[k];
+                u[k] = sane(qx[k] * factor, FASTEST);
+                v[k] = sane(qz[k] * factor, FASTEST);
+            }
         }
     }
 }
@@ -160,65 +192,73 @@ impl Faces {
     /// row `here` between its neighbours.
     #[inline(always)]
     pub fn reconstruct(&mut self, north: &Cells, here: &Cells, south: &Cells, range: (usize, usize), half_ratio: f32) {
-        let (a, b) = range;
-        let n = b - a;
-        macro_rules! around {
-            ($field:ident) => {
-                (&here.$field[a - 1..b - 1], &here.$field[a..b], &here.$field[a + 1..b + 1], &north.$field[a..b], &south.$field[a..b])
-            };
+        for at in (range.0..range.1).step_by(LANES) {
+            self.reconstruct_block(north, here, south, at, half_ratio);
         }
-        let (h_w, h, h_e, h_n, h_s) = around!(depth);
-        let (l_w, l, l_e, l_n, l_s) = around!(level);
-        let (u_w, u, u_e, u_n, u_s) = around!(u);
-        let (v_w, v, v_e, v_n, v_s) = around!(v);
-        macro_rules! side {
-            ($side:ident) => {
-                (
-                    &mut self.$side.depth[a..b],
-                    &mut self.$side.level[a..b],
-                    &mut self.$side.normal[a..b],
-                    &mut self.$side.tangential[a..b],
-                )
-            };
-        }
-        let west = side!(west);
-        let east = side!(east);
-        let north = side!(north);
-        let south = side!(south);
-        let (push_x, push_z) = (&mut self.push_x[a..b], &mut self.push_z[a..b]);
-        for k in 0..n {
-            let hx = 0.5 * limited(h[k] - h_w[k], h_e[k] - h[k]);
-            let hz = 0.5 * limited(h[k] - h_n[k], h_s[k] - h[k]);
-            let lx = 0.5 * limited(l[k] - l_w[k], l_e[k] - l[k]);
-            let lz = 0.5 * limited(l[k] - l_n[k], l_s[k] - l[k]);
-            let ux = 0.5 * limited(u[k] - u_w[k], u_e[k] - u[k]);
-            let uz = 0.5 * limited(u[k] - u_n[k], u_s[k] - u[k]);
-            let vx = 0.5 * limited(v[k] - v_w[k], v_e[k] - v[k]);
-            let vz = 0.5 * limited(v[k] - v_n[k], v_s[k] - v[k]);
+    }
 
-            // ∂h/∂t = −∇·(h u), ∂u/∂t = −u·∇u − g ∇η over Δt/2, where a slope is half the difference over Δx.
-            let step = 2.0 * half_ratio;
-            let h_t = -step * (u[k] * hx + v[k] * hz + h[k] * (ux + vz));
-            let u_t = -step * (u[k] * ux + v[k] * uz + GRAVITY * lx);
-            let v_t = -step * (u[k] * vx + v[k] * vz + GRAVITY * lz);
-            let (h1, l1, u1, v1) = (h[k] + h_t, l[k] + h_t, u[k] + u_t, v[k] + v_t);
-
-            // The bed of a face stays where it is, also where the water would fall below it.
-            let bed_w = (l[k] - lx) - (h[k] - hx);
-            let bed_e = (l[k] + lx) - (h[k] + hx);
-            let bed_n = (l[k] - lz) - (h[k] - hz);
-            let bed_s = (l[k] + lz) - (h[k] + hz);
-            let (depth_w, level_w) = ((h1 - hx).max(0.0), (l1 - lx).max(bed_w));
-            let (depth_e, level_e) = ((h1 + hx).max(0.0), (l1 + lx).max(bed_e));
-            let (depth_n, level_n) = ((h1 - hz).max(0.0), (l1 - lz).max(bed_n));
-            let (depth_s, level_s) = ((h1 + hz).max(0.0), (l1 + lz).max(bed_s));
-            (west.0[k], west.1[k], west.2[k], west.3[k]) = (depth_w, level_w, u1 - ux, v1 - vx);
-            (east.0[k], east.1[k], east.2[k], east.3[k]) = (depth_e, level_e, u1 + ux, v1 + vx);
-            (north.0[k], north.1[k], north.2[k], north.3[k]) = (depth_n, level_n, v1 - vz, u1 - uz);
-            (south.0[k], south.1[k], south.2[k], south.3[k]) = (depth_s, level_s, v1 + vz, u1 + uz);
-            push_x[k] = (0.5 * GRAVITY) * (depth_w + depth_e) * (level_e - level_w);
-            push_z[k] = (0.5 * GRAVITY) * (depth_n + depth_s) * (level_s - level_n);
+    #[inline(always)]
+    fn reconstruct_block(&mut self, north: &Cells, here: &Cells, south: &Cells, at: usize, half_ratio: f32) {
+        macro_rules! slopes {
+            ($field:ident) => {{
+                let (mut x, mut z) = ([0.0; LANES], [0.0; LANES]);
+                let (w, c, e) = (block(&here.$field, at - 1), block(&here.$field, at), block(&here.$field, at + 1));
+                let (n, s) = (block(&north.$field, at), block(&south.$field, at));
+                for k in 0..LANES {
+                    x[k] = 0.5 * limited(c[k] - w[k], e[k] - c[k]);
+                }
+                for k in 0..LANES {
+                    z[k] = 0.5 * limited(c[k] - n[k], s[k] - c[k]);
+                }
+                (c, x, z)
+            }};
         }
+        let (h, hxs, hzs) = slopes!(depth);
+        let (l, lxs, lzs) = slopes!(level);
+        let (u, uxs, uzs) = slopes!(u);
+        let (v, vxs, vzs) = slopes!(v);
+        // ∂h/∂t = −∇·(h u), ∂u/∂t = −u·∇u − g ∇η over Δt/2, where a slope is half the difference over Δx.
+        let step = 2.0 * half_ratio;
+        let (mut h_t, mut u_t, mut v_t) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for k in 0..LANES {
+            h_t[k] = -step * (u[k] * hxs[k] + v[k] * hzs[k] + h[k] * (uxs[k] + vzs[k]));
+        }
+        for k in 0..LANES {
+            u_t[k] = u[k] - step * (u[k] * uxs[k] + v[k] * uzs[k] + GRAVITY * lxs[k]);
+        }
+        for k in 0..LANES {
+            v_t[k] = v[k] - step * (u[k] * vxs[k] + v[k] * vzs[k] + GRAVITY * lzs[k]);
+        }
+        let (west, east) = (self.west.block_mut(at), self.east.block_mut(at));
+        let (north, south) = (self.north.block_mut(at), self.south.block_mut(at));
+        let (push_x, push_z) = (block_mut(&mut self.push_x, at), block_mut(&mut self.push_z, at));
+        sides(west, east, push_x, (h, l), (&hxs, &lxs), &h_t, (&u_t, &uxs), (&v_t, &vxs));
+        sides(north, south, push_z, (h, l), (&hzs, &lzs), &h_t, (&v_t, &vzs), (&u_t, &uzs));
+    }
+}
+
+type SideBlocks<'a> = (&'a mut Block, &'a mut Block, &'a mut Block, &'a mut Block);
+
+#[inline(always)]
+fn sides(before: SideBlocks, after: SideBlocks, push: &mut Block, (h, l): (&Block, &Block), (hs, ls): (&Block, &Block), h_t: &Block, (n, ns): (&Block, &Block), (t, ts): (&Block, &Block)) {
+    for k in 0..LANES {
+        // The bed of a face stays where it is, also where the water would fall below it.
+        let bed_w = (l[k] - ls[k]) - (h[k] - hs[k]);
+        let bed_e = (l[k] + ls[k]) - (h[k] + hs[k]);
+        let (h1, l1) = (h[k] + h_t[k], l[k] + h_t[k]);
+        let (depth_w, level_w) = (max(h1 - hs[k], 0.0), max(l1 - ls[k], bed_w));
+        let (depth_e, level_e) = (max(h1 + hs[k], 0.0), max(l1 + ls[k], bed_e));
+        before.0[k] = depth_w;
+        before.1[k] = level_w;
+        after.0[k] = depth_e;
+        after.1[k] = level_e;
+        push[k] = (0.5 * GRAVITY) * (depth_w + depth_e) * (level_e - level_w);
+    }
+    for k in 0..LANES {
+        before.2[k] = n[k] - ns[k];
+        after.2[k] = n[k] + ns[k];
+        before.3[k] = t[k] - ts[k];
+        after.3[k] = t[k] + ts[k];
     }
 }
 
@@ -247,23 +287,22 @@ impl Fluxes {
         before: &Sides,
         after: &Sides,
         shift: usize,
-        (a, b): (usize, usize),
+        range: (usize, usize),
         crest: impl Fn(usize) -> f32,
     ) {
-        let n = b - a;
-        let l = (&before.depth[a..b], &before.level[a..b], &before.normal[a..b], &before.tangential[a..b]);
-        let (c, d) = (a + shift, b + shift);
-        let r = (&after.depth[c..d], &after.level[c..d], &after.normal[c..d], &after.tangential[c..d]);
-        let (mass, first) = (&mut self.mass[a..b], &mut self.before[a..b]);
-        let (second, along) = (&mut self.after[a..b], &mut self.tangential[a..b]);
-        for k in 0..n {
-            let left = Side { depth: l.0[k], level: l.1[k], normal: l.2[k], tangential: l.3[k] };
-            let right = Side { depth: r.0[k], level: r.1[k], normal: r.2[k], tangential: r.3[k] };
-            let flux = riemann(left, right, crest(a + k));
-            mass[k] = flux.mass;
-            first[k] = flux.before;
-            second[k] = flux.after;
-            along[k] = flux.tangential;
+        for at in (range.0..range.1).step_by(LANES) {
+            let (l, r) = (before.block(at), after.block(at + shift));
+            let (mass, first) = (block_mut(&mut self.mass, at), block_mut(&mut self.before, at));
+            let (second, along) = (block_mut(&mut self.after, at), block_mut(&mut self.tangential, at));
+            for k in 0..LANES {
+                let left = Side { depth: l.0[k], level: l.1[k], normal: l.2[k], tangential: l.3[k] };
+                let right = Side { depth: r.0[k], level: r.1[k], normal: r.2[k], tangential: r.3[k] };
+                let flux = riemann(left, right, crest(at + k));
+                mass[k] = flux.mass;
+                first[k] = flux.before;
+                second[k] = flux.after;
+                along[k] = flux.tangential;
+            }
         }
     }
 }
@@ -276,70 +315,92 @@ pub(super) struct Surroundings<'a> {
     pub north: &'a Fluxes,
     /// Fluxes along z through the southern faces.
     pub south: &'a Fluxes,
-    /// See [`Faces::push_x`].
-    pub push_x: &'a Values,
-    /// See [`Faces::push_z`].
-    pub push_z: &'a Values,
-    /// What point sources add, m/s, for each cell; empty if there are none.
-    pub sources: &'a [f32],
+    /// The row's own faces.
+    pub faces: &'a Faces,
+    /// What point sources add, m/s, for each cell; `None` if there are none.
+    pub sources: Option<&'a Values>,
 }
 
-/// Writes the state of a row after a step into `new` and what fell or sprang in it (m) into `given`, and returns the greatest speed of a signal in it, |u| + c (m/s).
-#[inline(always)]
-pub(super) fn update(new: &mut StateRowMut, old: StateRow, around: &Surroundings, numbers: Numbers, given: &mut Values) -> f32 {
-    if around.sources.is_empty() {
-        update_with(new, old, around, numbers, given, |_| 0.0)
-    } else {
-        update_with(new, old, around, numbers, given, |k| around.sources[k])
+/// What a step makes of a row.
+#[derive(Clone)]
+pub(super) struct Updated {
+    pub state: StateRows,
+    /// What fell and sprang, m.
+    pub given: Values,
+    /// |u| + c, m/s.
+    pub signal: Values,
+}
+
+impl Default for Updated {
+    fn default() -> Self {
+        Self { state: StateRows::default(), given: [0.0; SPAN], signal: [0.0; SPAN] }
     }
 }
 
-#[inline(always)]
-fn update_with(
-    new: &mut StateRowMut,
-    old: StateRow,
-    around: &Surroundings,
-    numbers: Numbers,
-    given: &mut Values,
-    source: impl Fn(usize) -> f32,
-) -> f32 {
-    let n = old.depth.len();
-    let given = &mut given[..n];
-    let (h, carry, qx, qz) = (&old.depth[..n], &old.carry[..n], &old.discharge_x[..n], &old.discharge_z[..n]);
-    let (h_new, carry_new) = (&mut new.depth[..n], &mut new.carry[..n]);
-    let (qx_new, qz_new) = (&mut new.discharge_x[..n], &mut new.discharge_z[..n]);
-    let (from, to) = (HALO, HALO + n);
-    let (x, north, south) = (around.x, around.north, around.south);
-    let (mass_e, before_e, along_e) = (&x.mass[from..to], &x.before[from..to], &x.tangential[from..to]);
-    let (mass_w, after_w, along_w) = (&x.mass[from - 1..to - 1], &x.after[from - 1..to - 1], &x.tangential[from - 1..to - 1]);
-    let (mass_n, after_n, along_n) = (&north.mass[from..to], &north.after[from..to], &north.tangential[from..to]);
-    let (mass_s, before_s, along_s) = (&south.mass[from..to], &south.before[from..to], &south.tangential[from..to]);
-    let (push_x, push_z) = (&around.push_x[from..to], &around.push_z[from..to]);
-    let Numbers { dt, ratio, drag, rain } = numbers;
-    let mut fastest = 0_u32;
-    for k in 0..n {
-        let depth = sane(h[k], DEEPEST).max(0.0);
-        let flowed = -ratio * ((mass_e[k] - mass_w[k]) + (mass_s[k] - mass_n[k]));
-        // A sink takes no more than there is.
-        given[k] = (dt * (rain + source(k))).max(-(depth + flowed).max(0.0));
-        // Kahan: what the sum cannot hold is carried to the next step, and so is water that left twice.
-        let change = flowed + given[k] + sane(carry[k], DEEPEST);
-        let sum = (depth + change).max(0.0);
-        h_new[k] = sum;
-        carry_new[k] = change - (sum - depth);
+impl Updated {
+    /// The state of the first `width` cells of a strip after a step.
+    #[inline(always)]
+    pub fn update(&mut self, old: &StateRows, around: &Surroundings, numbers: Numbers, width: usize) {
+        for at in (HALO..HALO + width).step_by(LANES) {
+            match around.sources {
+                None => self.update_block(old, around, numbers, at, |_| 0.0),
+                Some(sources) => self.update_block(old, around, numbers, at, |k| sources[at + k]),
+            }
+        }
+    }
 
-        let px = sane(qx[k], DEEPEST * FASTEST) - ratio * ((before_e[k] - after_w[k]) + push_x[k] + (along_s[k] - along_n[k]));
-        let pz = sane(qz[k], DEEPEST * FASTEST) - ratio * ((before_s[k] - after_n[k]) + push_z[k] + (along_e[k] - along_w[k]));
-        let size = (px * px + pz * pz).sqrt();
-        let factor = per_depth(sum);
-        // In a film the discharge follows the reduced speed, so that none is left over when it deepens.
-        let film = if sum < FILM { sum * factor } else { 1.0 };
-        let kept = kept_by_friction(sum, size, dt, drag) * film;
-        qx_new[k] = px * kept;
-        qz_new[k] = pz * kept;
-        let speed = (px.abs().max(pz.abs()) * kept) * factor + (GRAVITY * sum).sqrt();
+    /// The fastest signal of the cells of a strip, m/s.
+    #[inline(always)]
+    pub fn fastest(&self, width: usize) -> f32 {
         // Floats that are not negative are ordered like their bits, and integers have a vector maximum.
-        fastest = fastest.max(speed.to_bits());
+        let signals = &self.signal[HALO..HALO + width];
+        f32::from_bits(signals.iter().fold(0, |fastest, signal| fastest.max(signal.to_bits())))
     }
-    f32::from_bits(fastest)
+
+    #[inline(always)]
+    fn update_block(
+        &mut self,
+        old: &StateRows,
+        around: &Surroundings,
+        numbers: Numbers,
+        at: usize,
+        source: impl Fn(usize) -> f32,
+    ) {
+        let (h, carry) = (block(&old.depth, at), block(&old.carry, at));
+        let (qx, qz) = (block(&old.discharge_x, at), block(&old.discharge_z, at));
+        let (h_new, carry_new) = (block_mut(&mut self.state.depth, at), block_mut(&mut self.state.carry, at));
+        let (qx_new, qz_new) = (block_mut(&mut self.state.discharge_x, at), block_mut(&mut self.state.discharge_z, at));
+        let (given, signal) = (block_mut(&mut self.given, at), block_mut(&mut self.signal, at));
+        let (x, north, south) = (around.x, around.north, around.south);
+        let (mass_e, before_e, along_e) = (block(&x.mass, at), block(&x.before, at), block(&x.tangential, at));
+        let (mass_w, after_w, along_w) = (block(&x.mass, at - 1), block(&x.after, at - 1), block(&x.tangential, at - 1));
+        let (mass_n, after_n, along_n) = (block(&north.mass, at), block(&north.after, at), block(&north.tangential, at));
+        let (mass_s, before_s, along_s) = (block(&south.mass, at), block(&south.before, at), block(&south.tangential, at));
+        let (push_x, push_z) = (block(&around.faces.push_x, at), block(&around.faces.push_z, at));
+        let Numbers { dt, ratio, drag, rain } = numbers;
+        for k in 0..LANES {
+            let depth = max(sane(h[k], DEEPEST), 0.0);
+            let flowed = -ratio * ((mass_e[k] - mass_w[k]) + (mass_s[k] - mass_n[k]));
+            // A sink takes no more than there is.
+            let added = max(dt * (rain + source(k)), -max(depth + flowed, 0.0));
+            // Kahan: what the sum cannot hold is carried to the next step, and so is water that left twice.
+            let change = flowed + added + sane(carry[k], DEEPEST);
+            let sum = max(depth + change, 0.0);
+            given[k] = added;
+            h_new[k] = sum;
+            carry_new[k] = change - (sum - depth);
+
+            let force_x = (before_e[k] - after_w[k]) + push_x[k] + (along_s[k] - along_n[k]);
+            let force_z = (before_s[k] - after_n[k]) + push_z[k] + (along_e[k] - along_w[k]);
+            let px = sane(qx[k], DEEPEST * FASTEST) - ratio * force_x;
+            let pz = sane(qz[k], DEEPEST * FASTEST) - ratio * force_z;
+            let factor = per_depth(sum);
+            // In a film the discharge follows the reduced speed, so that none is left over when it deepens.
+            let film = if sum < FILM { sum * factor } else { 1.0 };
+            let kept = film * kept_by_friction(sum, (px * px + pz * pz).sqrt(), dt, drag);
+            qx_new[k] = px * kept;
+            qz_new[k] = pz * kept;
+            signal[k] = max(px.abs(), pz.abs()) * kept * factor + (GRAVITY * sum).sqrt();
+        }
+    }
 }
