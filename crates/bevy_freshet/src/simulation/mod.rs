@@ -20,6 +20,7 @@ mod frame;
 mod numbers;
 mod plan;
 mod progress;
+pub(crate) mod shallow_water;
 mod stages;
 mod state;
 #[cfg(test)]

@@ -1,5 +1,5 @@
 //! The clock: as many steps as the fastest signal asks for.
-use super::{ShallowWater, step, strip::Numbers};
+use super::{Forcing, ShallowWater, step, strip::Numbers};
 use crate::waves::GRAVITY;
 use std::mem;
 
@@ -37,10 +37,8 @@ impl ShallowWater {
         if !(most.is_finite() && most > 0.0) {
             return 0.0;
         }
-        let entering = self.edges.update(&self.bed, self.cell_size, self.time);
-        let rain = self.rain.at(self.time).max(0.0);
-        self.update_rates();
-        let dt = self.choose_dt(most, entering, rain);
+        let Forcing { rain, entering, longest_step, .. } = self.forcing();
+        let dt = self.choose_dt(most, entering, longest_step);
         let numbers = Numbers {
             dt,
             ratio: dt / self.cell_size,
@@ -64,19 +62,15 @@ impl ShallowWater {
     }
 
     /// Δt, s: the Courant number's, at most `most`, and such that what is left of `most` needs no tiny step.
-    fn choose_dt(&self, most: f64, entering: f32, rain: f32) -> f32 {
+    fn choose_dt(&self, most: f64, entering: f32, longest_step: f32) -> f32 {
         let signal = self.courant * self.cell_size / self.fastest.max(entering).max(1e-20);
-        // Water that is added makes waves: of speed √(g s Δt) after Δt at the rate s.
-        let rate = self.rates.iter().fold(rain, |most, &rate| most.max(rate + rain));
-        let reach = self.courant * self.cell_size;
-        let added = libm::cbrtf(reach * reach / (GRAVITY * rate.max(1e-20)));
-        let longest = f64::from(signal.min(added));
+        let longest = f64::from(signal.min(longest_step));
         let steps = (most / longest).ceil().max(1.0);
         if steps > 2.0 { longest as f32 } else { (most / steps) as f32 }
     }
 
     /// Sets the rates of the point sources at this time, in m/s for every cell.
-    fn update_rates(&mut self) {
+    pub(super) fn update_rates(&mut self) {
         let area = self.cell_size * self.cell_size;
         for (_, footprint) in &self.sources {
             for &(cell, _) in &footprint.0 {

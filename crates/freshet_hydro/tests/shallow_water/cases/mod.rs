@@ -2,7 +2,11 @@
 
 pub mod basin;
 pub mod dam_break;
+pub mod order;
 pub mod rest;
+pub mod steady;
+pub mod terrain;
+pub mod volume;
 
 use freshet_hydro::{grid::Grid, shallow_water::ShallowWater};
 use glam::{UVec2, Vec2};

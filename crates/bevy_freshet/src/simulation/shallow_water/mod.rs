@@ -1,0 +1,62 @@
+//! The shallow water of [`freshet_hydro::shallow_water`] on the GPU.
+//!
+//! ```text
+//! begin     the time that a frame adds is owed to the water           once a frame
+//! edges     Δt from the fastest signal; what leaves at the sides      ┐ for each step that the
+//! step      the new state of every cell                               ┘ frame may take
+//! ```
+//!
+//! No number of them comes from the CPU during a frame: a step for which no time is left copies the state. What they come
+//! to returns some frames later ([`returned`]), and is all that the CPU knows of the water.
+mod frame;
+mod numbers;
+mod plan;
+mod returned;
+mod stages;
+mod state;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use frame::{Ground, ShallowFrame, StartState};
+pub(crate) use numbers::{GpuEdge, GpuShallow};
+pub(crate) use returned::{Held, Returned};
+
+use bevy::{
+    asset::embedded_asset,
+    core_pipeline::schedule::camera_driver,
+    prelude::*,
+    render::{
+        Render, RenderApp, RenderStartup, RenderSystems,
+        extract_component::ExtractComponentPlugin,
+        renderer::{RenderGraph, RenderGraphSystems},
+    },
+    shader::load_shader_library,
+};
+
+/// Runs the stages of every [`ShallowFrame`]. Does nothing in an app without a GPU device.
+pub(crate) struct ShallowWaterPlugin;
+
+impl Plugin for ShallowWaterPlugin {
+    fn build(&self, app: &mut App) {
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+        load_shader_library!(app, "bindings.wgsl");
+        load_shader_library!(app, "scheme.wgsl");
+        embedded_asset!(app, "edges.wgsl");
+        embedded_asset!(app, "step.wgsl");
+        app.add_plugins(ExtractComponentPlugin::<ShallowFrame>::default());
+        let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
+        render_app
+            .init_resource::<plan::Plans>()
+            .add_systems(RenderStartup, (stages::create_stages, state::forget_states))
+            .add_systems(
+                Render,
+                (
+                    plan::plan_steps.in_set(RenderSystems::PrepareBindGroups),
+                    returned::map_copies.in_set(RenderSystems::Cleanup),
+                ),
+            )
+            .add_systems(RenderGraph, plan::run_steps.in_set(RenderGraphSystems::Render).before(camera_driver));
+    }
+}

@@ -1,0 +1,56 @@
+//! What the stages read, as `bindings.wgsl` has it.
+use bevy::{prelude::*, render::render_resource::ShaderType};
+
+/// Numbers of a frame.
+#[derive(Clone, Debug, Default, PartialEq, ShaderType)]
+pub(crate) struct GpuShallow {
+    /// Columns and rows.
+    pub size: IVec2,
+    /// Whether x and z wrap around.
+    pub periodic: UVec2,
+    /// Side of a cell, m.
+    pub cell: f32,
+    /// Courant number of a step.
+    pub courant: f32,
+    /// g n².
+    pub drag: f32,
+    /// Rain, m/s.
+    pub rain: f32,
+    /// Time that this frame adds, s.
+    pub added: f32,
+    /// Time that may be owed, s; what exceeds it is never simulated.
+    pub most_owed: f32,
+    /// Fastest signal that may enter at the edges, m/s.
+    pub entering: f32,
+    /// Longest step that the sources allow, s.
+    pub longest: f32,
+    /// Whether faces have crests.
+    pub has_walls: u32,
+    /// Whether there are point sources.
+    pub has_sources: u32,
+}
+
+/// What is outside a cell of a side; see [`ShallowWater::edge_cells`](freshet_hydro::shallow_water::ShallowWater::edge_cells).
+#[derive(Clone, Copy, Debug, Default, PartialEq, ShaderType)]
+pub(crate) struct GpuEdge {
+    pub kind: u32,
+    pub value: f32,
+}
+
+/// The clock; atomic numbers are plain ones here.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub(super) struct GpuClock {
+    pub fastest: UVec2,
+    pub owed: Vec2,
+    pub dt: f32,
+    pub steps: u32,
+    pub time: Vec2,
+    pub rained: Vec2,
+}
+
+/// What left through a cell of a side.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub(super) struct GpuLeaving {
+    pub flux: Vec3,
+    pub sum: Vec2,
+}

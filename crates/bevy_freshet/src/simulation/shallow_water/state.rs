@@ -1,0 +1,122 @@
+//! The state of a shallow water on the GPU.
+use super::{
+    ShallowFrame,
+    frame::{Ground, StartState},
+    numbers::{GpuClock, GpuEdge, GpuLeaving, GpuShallow},
+    returned::Copies,
+};
+use bevy::{
+    prelude::*,
+    render::{
+        render_resource::{
+            Buffer, BufferInitDescriptor, BufferUsages, ShaderType, StorageBuffer, UniformBuffer, encase,
+        },
+        renderer::{RenderDevice, RenderQueue},
+    },
+};
+use std::sync::atomic::Ordering;
+
+/// Buffers of one water.
+#[derive(Component)]
+pub(super) struct ShallowState {
+    /// Which state and ground they hold.
+    pub start: u64,
+    pub ground: u64,
+    pub numbers: UniformBuffer<GpuShallow>,
+    pub edges: StorageBuffer<Vec<GpuEdge>>,
+    /// Which of two values a step reads: 0 in the first and 1 in the second.
+    pub parities: [UniformBuffer<UVec4>; 2],
+    pub clock: Buffer,
+    /// The first is read and the second written by even steps, the other way round by odd ones.
+    pub states: [Buffer; 2],
+    pub bed: Buffer,
+    pub leaving: Buffer,
+    pub extras: Buffer,
+    pub given: Buffer,
+    pub copies: Copies,
+}
+
+const STORAGE: BufferUsages = BufferUsages::STORAGE.union(BufferUsages::COPY_SRC);
+
+impl ShallowState {
+    /// Buffers with this state over this ground.
+    pub fn new(device: &RenderDevice, frame: &ShallowFrame, start: &StartState, ground: &Ground) -> Self {
+        let buffer = |label, contents: &[u8]| {
+            device.create_buffer_with_data(&BufferInitDescriptor { label: Some(label), contents, usage: STORAGE })
+        };
+        let clock = GpuClock { fastest: UVec2::splat(start.fastest.to_bits()), ..default() };
+        let cells = bytes_of_list(&start.cells);
+        let given = if frame.numbers.has_sources == 0 { 1 } else { start.cells.len() };
+        let parity = |parity| {
+            let mut uniform = UniformBuffer::from(UVec4::new(parity, 0, 0, 0));
+            uniform.set_label(Some("water_shallow_parity"));
+            uniform
+        };
+        let mut state = Self {
+            start: start.version,
+            ground: 0,
+            numbers: default(),
+            edges: default(),
+            parities: [parity(0), parity(1)],
+            clock: buffer("water_shallow_clock", &bytes_of(&clock)),
+            states: [buffer("water_shallow_a", &cells), buffer("water_shallow_b", &cells)],
+            bed: buffer("water_shallow_bed", &[0; 4]),
+            leaving: buffer("water_shallow_leaving", &bytes_of_list(&vec![GpuLeaving::default(); frame.edges.len()])),
+            extras: buffer("water_shallow_extras", &[0; 16]),
+            given: buffer("water_shallow_given", &vec![0; given * 8]),
+            copies: Copies::default(),
+        };
+        state.numbers.set_label(Some("water_shallow_numbers"));
+        state.edges.set_label(Some("water_shallow_edges"));
+        state.set_ground(device, ground);
+        state
+    }
+
+    /// Replaces bed, walls and sources.
+    pub fn set_ground(&mut self, device: &RenderDevice, ground: &Ground) {
+        let buffer = |label, contents: &[u8]| {
+            device.create_buffer_with_data(&BufferInitDescriptor { label: Some(label), contents, usage: STORAGE })
+        };
+        self.bed = buffer("water_shallow_bed", &bytes_of_list(&ground.bed));
+        let none = [Vec4::ZERO];
+        self.extras = buffer(
+            "water_shallow_extras",
+            &bytes_of_list(if ground.extras.is_empty() { &none[..] } else { &ground.extras }),
+        );
+        self.ground = ground.version;
+    }
+
+    /// Hands the numbers of a frame to the GPU, and says what it holds.
+    pub fn upload(&mut self, frame: &ShallowFrame, device: &RenderDevice, queue: &RenderQueue) {
+        self.numbers.set(frame.numbers.clone());
+        self.numbers.write_buffer(device, queue);
+        self.edges.set(frame.edges.clone());
+        self.edges.write_buffer(device, queue);
+        self.parities.iter_mut().for_each(|parity| parity.write_buffer(device, queue));
+        frame.held.start.store(self.start, Ordering::Relaxed);
+        frame.held.ground.store(self.ground, Ordering::Relaxed);
+    }
+}
+
+/// Bytes of a value in the layout of a storage buffer.
+fn bytes_of<T: ShaderType + encase::internal::WriteInto>(value: &T) -> Vec<u8> {
+    let mut buffer = encase::StorageBuffer::new(Vec::new());
+    buffer.write(value).expect("a vector grows");
+    buffer.into_inner()
+}
+
+/// Bytes of a list in the layout of a storage buffer.
+fn bytes_of_list<T: ShaderType + encase::ShaderSize + encase::internal::WriteInto>(list: &[T]) -> Vec<u8> {
+    bytes_of(&list)
+}
+
+/// Buffers of a lost device are of no use.
+pub(super) fn forget_states(mut commands: Commands, states: Query<(Entity, Option<&ShallowFrame>), With<ShallowState>>) {
+    for (entity, frame) in &states {
+        commands.entity(entity).remove::<ShallowState>();
+        if let Some(frame) = frame {
+            frame.held.start.store(0, Ordering::Relaxed);
+            frame.held.ground.store(0, Ordering::Relaxed);
+        }
+    }
+}
