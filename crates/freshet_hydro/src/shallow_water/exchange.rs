@@ -32,7 +32,7 @@ impl ShallowWater {
     /// The carry is what the depth cannot hold: rounding, and water that left twice.
     pub fn conserved(&self) -> impl Iterator<Item = [f32; 4]> {
         let state = &self.now;
-        (0..self.bed.len()).map(|i| [state.depth[i], state.carry[i], state.discharge_x[i], state.discharge_z[i]])
+        (0..self.bed.len()).map(|i| [state.depth[i], state.discharge_x[i], state.discharge_z[i], state.carry[i]])
     }
 
     /// Takes over a state that another machine has come to, in the form of [`ShallowWater::conserved`].
@@ -40,7 +40,7 @@ impl ShallowWater {
     /// Cells for which `cells` has nothing stay as they are.
     pub fn restore(&mut self, cells: impl Iterator<Item = [f32; 4]>, restored: Restored) {
         for (i, cell) in cells.enumerate().take(self.bed.len()) {
-            [self.now.depth[i], self.now.carry[i], self.now.discharge_x[i], self.now.discharge_z[i]] = cell;
+            [self.now.depth[i], self.now.discharge_x[i], self.now.discharge_z[i], self.now.carry[i]] = cell;
         }
         self.time = restored.time;
         self.fastest = restored.fastest_signal;

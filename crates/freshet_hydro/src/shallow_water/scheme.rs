@@ -38,14 +38,13 @@ pub(super) fn per_depth(depth: f32) -> f32 {
     2.0 * depth / (square + max(square, FILM * FILM))
 }
 
-/// Difference across a cell from the differences to its two neighbours, limited so that neither face overshoots the neighbour
-/// there (monotonised central, van Leer 1977).
+/// Half the difference across a cell from the differences to its two neighbours, limited so that neither face overshoots the
+/// neighbour there (monotonised central, van Leer 1977).
 #[inline(always)]
-pub(super) fn limited(before: f32, after: f32) -> f32 {
-    let central = 0.5 * (before + after);
-    let (a, b) = (2.0 * before, 2.0 * after);
-    let rising = max(min(min(a, b), central), 0.0);
-    let falling = min(max(max(a, b), central), 0.0);
+pub(super) fn half_slope(before: f32, after: f32) -> f32 {
+    let central = 0.25 * (before + after);
+    let rising = max(min(min(before, after), central), 0.0);
+    let falling = min(max(max(before, after), central), 0.0);
     rising + falling
 }
 
@@ -212,7 +211,7 @@ mod tests {
 
         #[test]
         fn faces_never_overshoot_a_neighbour(a in -9.0_f32..9.0, b in -9.0_f32..9.0, c in -9.0_f32..9.0) {
-            let half = 0.5 * limited(b - a, c - b);
+            let half = half_slope(b - a, c - b);
             prop_assert!(b + half <= b.max(c) + 1e-5 && b + half >= b.min(c) - 1e-5);
             prop_assert!(b - half <= b.max(a) + 1e-5 && b - half >= b.min(a) - 1e-5);
         }

@@ -265,31 +265,6 @@ impl Strip<'_> {
             bed[k] = self.around.bed[base + column];
         }
         cells.load(state, bed, (0, last));
-        self.mirror_at_walls(cells, row, inside);
-    }
-
-    /// Turns back the velocity of halo cells behind walls.
-    #[inline(always)]
-    fn mirror_at_walls(&self, cells: &mut Cells, row: isize, inside: usize) {
-        let (columns, rows) = self.around.size;
-        let edges = self.around.edges;
-        if !self.around.periodic.1 && (row < 0 || row >= rows as isize) {
-            let side = if row < 0 { DomainSide::North } else { DomainSide::South };
-            let part = &edges[side as usize][self.west..self.west + self.width];
-            for (v, _) in cells.v[HALO..].iter_mut().zip(part).filter(|(_, edge)| **edge == EdgeCell::Wall) {
-                *v = -*v;
-            }
-        }
-        if self.around.periodic.0 {
-            return;
-        }
-        if self.west == 0 && edges[DomainSide::West as usize][inside] == EdgeCell::Wall {
-            cells.u[..HALO].iter_mut().for_each(|u| *u = -*u);
-        }
-        let east = HALO + self.width;
-        if self.west + self.width == columns && edges[DomainSide::East as usize][inside] == EdgeCell::Wall {
-            cells.u[east..east + HALO].iter_mut().for_each(|u| *u = -*u);
-        }
     }
 
     /// Fluxes through the eastern faces of the row, from the one west of the strip on.
@@ -375,19 +350,11 @@ impl Strip<'_> {
     }
 }
 
-/// The column or row inside the domain that stands for one that may be outside: across the domain, or mirrored at its edge.
+/// The column or row inside the domain that stands for one that may be outside: across the domain, or the one at its edge.
 #[inline(always)]
 fn within(at: isize, count: usize, wraps: bool) -> usize {
     let count = count as isize;
-    let inside = if (0..count).contains(&at) {
-        at
-    } else if wraps {
-        at.rem_euclid(count)
-    } else if at < 0 {
-        (-1 - at).min(count - 1)
-    } else {
-        (2 * count - 1 - at).max(0)
-    };
+    let inside = if wraps { at.rem_euclid(count) } else { at.clamp(0, count - 1) };
     inside as usize
 }
 

@@ -1,6 +1,6 @@
 //! Rows of a strip of columns: the scheme, one operation after the other along whole rows, so that the compiler turns each
 //! loop into vector instructions.
-use super::scheme::{DEEPEST, FASTEST, FILM, Flux, Side, kept_by_friction, limited, max, per_depth, riemann, sane, wall};
+use super::scheme::{DEEPEST, FASTEST, FILM, Flux, Side, half_slope, kept_by_friction, max, per_depth, riemann, sane, wall};
 use crate::waves::GRAVITY;
 
 /// Cells beyond a strip that its cells need.
@@ -205,10 +205,10 @@ impl Faces {
                 let (w, c, e) = (block(&here.$field, at - 1), block(&here.$field, at), block(&here.$field, at + 1));
                 let (n, s) = (block(&north.$field, at), block(&south.$field, at));
                 for k in 0..LANES {
-                    x[k] = 0.5 * limited(c[k] - w[k], e[k] - c[k]);
+                    x[k] = half_slope(c[k] - w[k], e[k] - c[k]);
                 }
                 for k in 0..LANES {
-                    z[k] = 0.5 * limited(c[k] - n[k], s[k] - c[k]);
+                    z[k] = half_slope(c[k] - n[k], s[k] - c[k]);
                 }
                 (c, x, z)
             }};

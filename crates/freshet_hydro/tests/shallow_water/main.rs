@@ -47,3 +47,58 @@ fn volume() {
 fn balance() {
     cases::volume::with_inflow_tide_and_rain(&mut run);
 }
+
+#[test]
+fn edges_reflect() {
+    cases::edges::reflect(&mut run);
+}
+#[test]
+fn edges_a_ring_leaves() {
+    cases::edges::a_ring_leaves(&mut run);
+}
+
+#[test]
+fn edges_a_tide_is_followed() {
+    cases::edges::a_tide_is_followed(&mut run);
+}
+
+#[test]
+fn edges_a_discharge_enters_dry_land() {
+    cases::edges::a_discharge_enters_dry_land(&mut run);
+}
+
+#[test]
+fn edges_no_more_is_taken_than_there_is() {
+    cases::edges::no_more_is_taken_than_there_is(&mut run);
+}
+
+#[test]
+fn edges_a_part_of_a_side() {
+    cases::edges::a_part_of_a_side(&mut run);
+}
+
+#[test]
+fn walls_a_closed_wall_leaks_nothing() {
+    cases::walls::a_closed_wall_leaks_nothing(&mut run);
+}
+
+#[test]
+fn walls_a_weir_holds_what_is_below_its_crest() {
+    cases::walls::a_weir_holds_what_is_below_its_crest(&mut run);
+}
+
+#[test]
+fn walls_weir_law() {
+    cases::walls::weir_law(&mut run);
+}
+
+#[test]
+fn walls_an_open_gate_leaves_no_trace() {
+    cases::walls::an_open_gate_leaves_no_trace(&mut run);
+}
+
+#[test]
+fn walls_a_moving_bed_keeps_the_volume() {
+    cases::walls::a_moving_bed_keeps_the_volume(&mut run);
+}
+

@@ -12,15 +12,13 @@ struct Numbers {
     most_owed: f32,             // time that may be owed, units: s
     entering: f32,              // fastest signal that may enter at the edges, units: m/s
     longest: f32,               // longest step that the sources allow, units: s
-    has_walls: u32,
-    has_sources: u32,
 }
 
 // The clock. Of two values one is read and the other written, in turns, so that no invocation reads what another writes.
 struct Clock {
     fastest: array<atomic<u32>, 2>,     // |u| + c as bits, units: m/s
     owed: array<f32, 2>,                // time that no step has used yet, units: s
-    dt: f32,                            // units: s
+    dt: f32,                            // of the newest step, units: s
     steps: u32,
     time: vec2<f32>,                    // time that has been simulated, and what the first number cannot hold, units: s
     rained: vec2<f32>,                  // depth of rain that has fallen, likewise, units: m
@@ -34,14 +32,13 @@ struct Edge {
 
 // What flows out of the domain through a cell of a side.
 struct Leaving {
-    flux: vec3<f32>,    // mass (m²/s), momentum along the normal and along the side (m³/s²)
-    sum: vec2<f32>,     // volume per width that has left, and what the first number cannot hold, units: m²
+    sum: vec2<f32>,     // volume per width so far, and what the first number cannot hold, units: m²
 }
 
 @group(0) @binding(0) var<uniform> numbers: Numbers;
 @group(0) @binding(1) var<uniform> parity: vec4<u32>;                           // 0 or 1: which value of a pair is read
 @group(0) @binding(2) var<storage, read_write> clock: Clock;
-@group(0) @binding(3) var<storage, read> state: array<vec4<f32>>;               // depth, carry (m), discharge (m²/s)
+@group(0) @binding(3) var<storage, read> state: array<vec4<f32>>;               // depth (m), discharge (m²/s), carry (m)
 @group(0) @binding(4) var<storage, read_write> state_out: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read> bed: array<f32>;                       // units: m
 @group(0) @binding(6) var<storage, read> edges: array<Edge>;                    // of the western, eastern, northern, southern side
@@ -55,16 +52,19 @@ const STILL: u32 = 2u;
 const LEVEL: u32 = 3u;
 const DISCHARGE: u32 = 4u;
 
-// Where edges of the sides begin.
-fn edge_offsets() -> vec4<i32> {
-    let size = numbers.size;
-    return vec4(0, size.y, 2 * size.y, 2 * size.y + size.x);
-}
-
 // The column or row inside the domain that stands for one that may be outside.
 fn within(at: i32, count: i32, wraps: u32) -> i32 {
-    let mirrored = select(max(2 * count - 1 - at, 0), min(-1 - at, count - 1), at < 0);
-    let wrapped = ((at % count) + count) % count;
-    let outside = select(mirrored, wrapped, wraps != 0u);
-    return select(outside, at, at >= 0 && at < count);
+    let inside = clamp(at, 0, count - 1);
+    let wrapped = (at + 2 * count) % count;
+    return select(inside, wrapped, wraps != 0u && at != inside);
+}
+
+// Δt, s: the Courant number's, no more than is owed, and such that what is left needs no tiny step. 0 if nothing is owed.
+fn choose_dt() -> f32 {
+    let owed = clock.owed[parity.x];
+    let fastest = bitcast<f32>(atomicLoad(&clock.fastest[parity.x]));
+    let signal = numbers.courant * numbers.cell / max(max(fastest, numbers.entering), 1e-20);
+    let longest = min(signal, numbers.longest);
+    let steps = max(ceil(owed / longest), 1.0);
+    return select(owed / steps, longest, steps > 2.0);
 }

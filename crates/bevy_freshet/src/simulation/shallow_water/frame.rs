@@ -16,6 +16,10 @@ pub(crate) struct ShallowFrame {
     pub start: Option<Arc<StartState>>,
     /// Bed, walls and sources that replace what the GPU has.
     pub ground: Option<Arc<Ground>>,
+    /// Whether faces have crests.
+    pub has_walls: bool,
+    /// Whether there are point sources.
+    pub has_sources: bool,
     /// Most steps, an even number.
     pub steps: u32,
     /// Where the render world says what it has and hands back what it came to.
@@ -27,7 +31,7 @@ pub(crate) struct ShallowFrame {
 pub(crate) struct StartState {
     /// Counts the states that were set; above 0.
     pub version: u64,
-    /// Depth, carry and discharge of every cell.
+    /// Depth, discharge and carry of every cell.
     pub cells: Vec<Vec4>,
     /// The fastest signal in it, m/s.
     pub fastest: f32,

@@ -1,9 +1,9 @@
 //! The shallow water of [`freshet_hydro::shallow_water`] on the GPU.
 //!
 //! ```text
-//! begin     the time that a frame adds is owed to the water           once a frame
-//! edges     Δt from the fastest signal; what leaves at the sides      ┐ for each step that the
-//! step      the new state of every cell                               ┘ frame may take
+//! begin     the time that a frame adds is owed to the water       once a frame
+//! step      Δt from the fastest signal; every cell takes a step   ┐ for each step that the
+//! border    cells at the edges take it with what is outside       ┘ frame may take
 //! ```
 //!
 //! No number of them comes from the CPU during a frame: a step for which no time is left copies the state. What they come
@@ -43,7 +43,8 @@ impl Plugin for ShallowWaterPlugin {
         }
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "scheme.wgsl");
-        embedded_asset!(app, "edges.wgsl");
+        load_shader_library!(app, "cells.wgsl");
+        embedded_asset!(app, "border.wgsl");
         embedded_asset!(app, "step.wgsl");
         app.add_plugins(ExtractComponentPlugin::<ShallowFrame>::default());
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };

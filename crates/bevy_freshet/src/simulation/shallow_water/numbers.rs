@@ -24,10 +24,6 @@ pub(crate) struct GpuShallow {
     pub entering: f32,
     /// Longest step that the sources allow, s.
     pub longest: f32,
-    /// Whether faces have crests.
-    pub has_walls: u32,
-    /// Whether there are point sources.
-    pub has_sources: u32,
 }
 
 /// What is outside a cell of a side; see [`ShallowWater::edge_cells`](freshet_hydro::shallow_water::ShallowWater::edge_cells).
@@ -51,6 +47,5 @@ pub(super) struct GpuClock {
 /// What left through a cell of a side.
 #[derive(Clone, Copy, Debug, Default, ShaderType)]
 pub(super) struct GpuLeaving {
-    pub flux: Vec3,
     pub sum: Vec2,
 }

@@ -2,7 +2,7 @@
 use super::{
     frame::ShallowFrame,
     returned,
-    stages::{GROUP, ROWS, Stages},
+    stages::{COLUMNS, GROUP, ROWS, Stages},
     state::ShallowState,
 };
 use bevy::{
@@ -25,6 +25,8 @@ struct Plan {
     entity: Entity,
     /// Of even and odd steps.
     groups: [BindGroup; 2],
+    /// Whether there are point sources, and walls.
+    variant: [bool; 2],
     steps: u32,
     edges: u32,
     cells: UVec2,
@@ -101,9 +103,10 @@ fn plan(
     Some(Plan {
         entity,
         groups: [group(0)?, group(1)?],
+        variant: [frame.has_sources, frame.has_walls],
         steps: frame.steps.next_multiple_of(2),
         edges: (2 * (size.x + size.y)).div_ceil(64),
-        cells: uvec2(size.x.div_ceil(GROUP), size.y.div_ceil(ROWS)),
+        cells: uvec2(size.x.div_ceil(GROUP * COLUMNS), size.y.div_ceil(ROWS)),
     })
 }
 
@@ -145,9 +148,11 @@ fn run(plan: &Plan, stages: &Stages, cache: &PipelineCache, pass: &mut ComputePa
         pass.dispatch_workgroups(workgroups.x, workgroups.y, 1);
     };
     dispatch(stages.begin, &plan.groups[0], UVec2::ONE);
+    let [sources, walls] = plan.variant.map(usize::from);
+    let stage = &stages.steps[sources][walls];
     for step in 0..plan.steps {
         let group = &plan.groups[step as usize % 2];
-        dispatch(stages.edges, group, uvec2(plan.edges, 1));
-        dispatch(stages.step, group, plan.cells);
+        dispatch(stage.step, group, plan.cells);
+        dispatch(stage.border, group, uvec2(plan.edges, 1));
     }
 }

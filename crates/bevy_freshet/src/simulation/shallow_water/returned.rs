@@ -52,7 +52,7 @@ pub(crate) struct Returned {
     pub given: f64,
     /// Volume per width that left through every cell of the sides, m².
     pub left: Vec<f64>,
-    /// Depth, carry and discharge of every cell.
+    /// Depth, discharge and carry of every cell.
     pub cells: Vec<Vec4>,
 }
 
@@ -124,7 +124,7 @@ pub(super) fn copy(state: &mut ShallowState, device: &RenderDevice, encoder: &mu
 pub(super) fn map_copies(mut states: Query<(&mut ShallowState, &super::ShallowFrame)>) {
     for (mut state, frame) in &mut states {
         let Some(buffer) = state.copies.filled.take() else { continue };
-        let (parts, start, has_sources) = (Parts::of(&state), state.start, frame.numbers.has_sources != 0);
+        let (parts, start, has_sources) = (Parts::of(&state), state.start, frame.has_sources);
         let (free, held) = (state.copies.free.clone(), frame.held.clone());
         let mapped = buffer.clone();
         buffer.slice(..).map_async(MapMode::Read, move |result| {

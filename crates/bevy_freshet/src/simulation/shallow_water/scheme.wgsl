@@ -30,10 +30,10 @@ fn per_depth(depth: f32) -> f32 {
 fn half_slope(before: vec4<f32>, here: vec4<f32>, after: vec4<f32>) -> vec4<f32> {
     let a = here - before;
     let b = after - here;
-    let central = 0.5 * (a + b);
-    let rising = max(min(min(2.0 * a, 2.0 * b), central), vec4(0.0));
-    let falling = min(max(max(2.0 * a, 2.0 * b), central), vec4(0.0));
-    return 0.5 * (rising + falling);
+    let central = 0.25 * (a + b);
+    let rising = max(min(min(a, b), central), vec4(0.0));
+    let falling = min(max(max(a, b), central), vec4(0.0));
+    return rising + falling;
 }
 
 // What a cell shows at its four sides half a step later: depth, level and the velocity along x and z.

@@ -8,11 +8,13 @@ use bevy::{
         PipelineCache, ShaderStages, ShaderType,
         binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer},
     },
-    shader::ShaderDefVal,
+    shader::{Shader, ShaderDefVal},
 };
 
 /// Invocations of a workgroup of the step, side by side in a row.
-pub(super) const GROUP: u32 = 64;
+pub(super) const GROUP: u32 = 32;
+/// Columns that an invocation goes down.
+pub(super) const COLUMNS: u32 = 4;
 /// Rows that an invocation goes down.
 pub(super) const ROWS: u32 = 16;
 
@@ -21,38 +23,48 @@ pub(super) const ROWS: u32 = 16;
 pub(super) struct Stages {
     pub layout: BindGroupLayoutDescriptor,
     pub begin: CachedComputePipelineId,
-    pub edges: CachedComputePipelineId,
+    /// Without and with point sources, each without and with walls.
+    pub steps: [[Step; 2]; 2],
+}
+
+/// The two stages of a step.
+pub(super) struct Step {
     pub step: CachedComputePipelineId,
+    pub border: CachedComputePipelineId,
 }
 
 impl Stages {
     /// Whether every pipeline has been made.
     pub fn are_ready(&self, cache: &PipelineCache) -> bool {
-        [self.begin, self.edges, self.step].into_iter().all(|stage| cache.get_compute_pipeline(stage).is_some())
+        let steps = self.steps.iter().flatten().flat_map(|step| [step.step, step.border]);
+        steps.chain([self.begin]).all(|stage| cache.get_compute_pipeline(stage).is_some())
     }
 }
 
 /// Makes the pipelines; again after a lost device.
 pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, cache: Res<PipelineCache>) {
     let layout = layout();
-    let stage = |label: &'static str, shader, entry: &'static str| {
+    let stage = |label: &'static str, shader: &Handle<Shader>, entry: &'static str, defines: &[&str]| {
+        let defines = defines.iter().copied().map(ShaderDefVal::from);
+        let numbers = [ShaderDefVal::UInt("GROUP".into(), GROUP), ShaderDefVal::UInt("ROWS".into(), ROWS)];
         cache.queue_compute_pipeline(ComputePipelineDescriptor {
             label: Some(label.into()),
             layout: vec![layout.clone()],
-            shader,
-            shader_defs: vec![
-                ShaderDefVal::UInt("GROUP".into(), GROUP),
-                ShaderDefVal::UInt("ROWS".into(), ROWS),
-            ],
+            shader: shader.clone(),
+            shader_defs: numbers.into_iter().chain(defines).collect(),
             entry_point: Some(entry.into()),
             ..default()
         })
     };
-    let edges = load_embedded_asset!(&*assets, "edges.wgsl");
+    let step = load_embedded_asset!(&*assets, "step.wgsl");
+    let border = load_embedded_asset!(&*assets, "border.wgsl");
+    let pair = |defines: &[&str]| Step {
+        step: stage("water_shallow_step", &step, "main", defines),
+        border: stage("water_shallow_border", &border, "main", defines),
+    };
     commands.insert_resource(Stages {
-        begin: stage("water_shallow_begin", edges.clone(), "begin"),
-        edges: stage("water_shallow_edges", edges, "main"),
-        step: stage("water_shallow_step", load_embedded_asset!(&*assets, "step.wgsl"), "main"),
+        begin: stage("water_shallow_begin", &step, "begin", &[]),
+        steps: [[pair(&[]), pair(&["WALLS"])], [pair(&["SOURCES"]), pair(&["SOURCES", "WALLS"])]],
         layout,
     });
 }

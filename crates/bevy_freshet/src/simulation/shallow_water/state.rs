@@ -46,7 +46,7 @@ impl ShallowState {
         };
         let clock = GpuClock { fastest: UVec2::splat(start.fastest.to_bits()), ..default() };
         let cells = bytes_of_list(&start.cells);
-        let given = if frame.numbers.has_sources == 0 { 1 } else { start.cells.len() };
+        let given = if !frame.has_sources { 1 } else { start.cells.len() };
         let parity = |parity| {
             let mut uniform = UniformBuffer::from(UVec4::new(parity, 0, 0, 0));
             uniform.set_label(Some("water_shallow_parity"));

@@ -1,208 +1,157 @@
-// Stage: one step of every cell. An invocation goes down a column of ROWS cells, and keeps what two rows share. The twin is
-// `strip.rs` in `freshet_hydro::shallow_water`.
-#import freshet::simulation::shallow_water::bindings::{numbers, parity, clock, state, state_out, bed, edges, leaving, extras, given, edge_offsets, within, WALL}
-#import freshet::simulation::shallow_water::scheme::{GRAVITY, FILM, DEEPEST, FASTEST, CLOSED, NO_CREST, Faces, Flux, Side, added_to, sane, per_depth, reconstruct, along_x, along_z, riemann, wall, kept_by_friction}
+// Stage: the clock chooses Δt, and every cell takes a step of it. Cells at the edges of the domain take it as if nothing were
+// there; the stage `border` takes it again for them.
+//
+// An invocation goes down four columns of ROWS cells, and keeps what rows and columns share. The twin is `strip.rs` in
+// `freshet_hydro::shallow_water`.
+#import freshet::simulation::shallow_water::bindings::{numbers, parity, clock, state, state_out, within, choose_dt}
+#import freshet::simulation::shallow_water::cells::{Around, primitive, flux_x, flux_z, update}
+#import freshet::simulation::shallow_water::scheme::{Faces, added_to, reconstruct}
 
+const COLUMNS: i32 = 4;
 const ROWS: i32 = #{ROWS};
 
-// Depth, level and velocity of five cells of a row around the invocation's column.
+// Time that the frame adds is owed to the water.
+@compute @workgroup_size(1)
+fn begin() {
+    clock.owed[0] = min(clock.owed[0] + numbers.added, numbers.most_owed);
+    clock.steps = 0u;
+}
+
+fn tick(dt: f32) {
+    let owed = clock.owed[parity.x];
+    clock.dt = dt;
+    clock.owed[1u - parity.x] = select(owed - dt, 0.0, dt >= owed);
+    clock.steps += select(0u, 1u, dt > 0.0);
+    clock.time = added_to(clock.time, dt);
+    clock.rained = added_to(clock.rained, dt * numbers.rain);
+    // For the step after the next one: nobody reads or writes this turn's number in the next.
+    let kept = atomicLoad(&clock.fastest[parity.x]);
+    atomicMax(&clock.fastest[1u - parity.x], select(0u, kept, dt <= 0.0));
+}
+
+// Depth, level and velocity of eight cells of a row; the middle four are the invocation's own.
 struct Row {
-    ww: vec4<f32>,
-    w: vec4<f32>,
+    a: vec4<f32>,
+    b: vec4<f32>,
     c: vec4<f32>,
+    d: vec4<f32>,
     e: vec4<f32>,
-    ee: vec4<f32>,
+    f: vec4<f32>,
+    g: vec4<f32>,
+    h: vec4<f32>,
 }
 
-// What flows through the western and eastern face of a cell, and how its own slope pushes it.
-struct Across {
-    west: Flux,
-    east: Flux,
-    push: vec2<f32>,    // g h ∇η Δx, units: m²/s²
-}
-
-fn primitive(i: i32) -> vec4<f32> {
-    let raw = state[i];
-    let depth = max(sane(raw.x, DEEPEST), 0.0);
-    let factor = per_depth(depth);
-    return vec4(depth, depth + bed[i], sane(raw.z * factor, FASTEST), sane(raw.w * factor, FASTEST));
-}
-
-// Whether the cell `at` of a side is a wall.
-fn is_wall(offset: i32, at: i32) -> bool {
-    return edges[offset + at].kind == WALL;
-}
-
-fn load_row(column: i32, row: i32) -> Row {
-    let size = numbers.size;
-    let wraps = numbers.periodic;
-    let z = within(row, size.y, wraps.y);
-    let base = z * size.x;
-    let at = vec4(
-        within(column - 2, size.x, wraps.x),
-        within(column - 1, size.x, wraps.x),
-        within(column + 1, size.x, wraps.x),
-        within(column + 2, size.x, wraps.x),
+fn load_row(first: vec4<i32>, last: vec4<i32>, row: i32) -> Row {
+    let base = within(row, numbers.size.y, numbers.periodic.y) * numbers.size.x;
+    return Row(
+        primitive(base + first.x),
+        primitive(base + first.y),
+        primitive(base + first.z),
+        primitive(base + first.w),
+        primitive(base + last.x),
+        primitive(base + last.y),
+        primitive(base + last.z),
+        primitive(base + last.w),
     );
-    var cells = Row(
-        primitive(base + at.x),
-        primitive(base + at.y),
-        primitive(base + column),
-        primitive(base + at.z),
-        primitive(base + at.w),
-    );
-    let offsets = edge_offsets();
-    if wraps.x == 0u && (column < 2 || column >= size.x - 2) {
-        // Behind a wall the water comes the other way.
-        let west = select(1.0, -1.0, is_wall(offsets.x, z));
-        let east = select(1.0, -1.0, is_wall(offsets.y, z));
-        cells.ww.z *= select(1.0, west, column < 2);
-        cells.w.z *= select(1.0, west, column < 1);
-        cells.e.z *= select(1.0, east, column >= size.x - 1);
-        cells.ee.z *= select(1.0, east, column >= size.x - 2);
-    }
-    if wraps.y == 0u && (row < 0 || row >= size.y) {
-        let offset = select(offsets.w, offsets.z, row < 0);
-        cells.w.w *= select(1.0, -1.0, is_wall(offset, at.y));
-        cells.c.w *= select(1.0, -1.0, is_wall(offset, column));
-        cells.e.w *= select(1.0, -1.0, is_wall(offset, at.z));
-    }
-    return cells;
-}
-
-fn flux_x(before: vec4<f32>, after: vec4<f32>, column: i32, row: i32) -> Flux {
-    if numbers.has_walls == 0u {
-        return riemann(along_x(before), along_x(after), NO_CREST);
-    }
-    let size = numbers.size;
-    let i = within(row, size.y, numbers.periodic.y) * size.x + within(column, size.x, numbers.periodic.x);
-    return over_crest(along_x(before), along_x(after), extras[i].x);
-}
-
-fn flux_z(before: vec4<f32>, after: vec4<f32>, column: i32, row: i32) -> Flux {
-    if numbers.has_walls == 0u {
-        return riemann(along_z(before), along_z(after), NO_CREST);
-    }
-    let i = within(row, numbers.size.y, numbers.periodic.y) * numbers.size.x + column;
-    return over_crest(along_z(before), along_z(after), extras[i].y);
-}
-
-fn over_crest(before: Side, after: Side, crest: f32) -> Flux {
-    var flux = riemann(before, after, crest);
-    if crest >= CLOSED {
-        flux.before += wall(before.depth, before.normal);
-        flux.after += wall(after.depth, -after.normal);
-    }
-    return flux;
-}
-
-// Fluxes of the middle cell of `here` along x.
-fn across(north: Row, here: Row, south: Row, faces: Faces, column: i32, row: i32, ratio: f32) -> Across {
-    let size = numbers.size;
-    let west = reconstruct(here.w, here.ww, here.c, north.w, south.w, ratio);
-    let east = reconstruct(here.e, here.c, here.ee, north.e, south.e, ratio);
-    var result: Across;
-    result.west = flux_x(west.east, faces.west, column - 1, row);
-    result.east = flux_x(faces.east, east.west, column, row);
-    let z = clamp(row, 0, size.y - 1);
-    if numbers.periodic.x == 0u && column == 0 {
-        let out = leaving[edge_offsets().x + z].flux;
-        result.west = Flux(-out.x, 0.0, out.y, -out.z);
-    }
-    if numbers.periodic.x == 0u && column == size.x - 1 {
-        let out = leaving[edge_offsets().y + z].flux;
-        result.east = Flux(out.x, out.y, 0.0, out.z);
-    }
-    result.push = 0.5 * GRAVITY * vec2(
-        (faces.west.x + faces.east.x) * (faces.east.y - faces.west.y),
-        (faces.north.x + faces.south.x) * (faces.south.y - faces.north.y),
-    );
-    return result;
-}
-
-// The flux along z through the northern face of `row`.
-fn northern(before: vec4<f32>, after: vec4<f32>, column: i32, row: i32) -> Flux {
-    if numbers.periodic.y == 0u && row == 0 {
-        let out = leaving[edge_offsets().z + column].flux;
-        return Flux(-out.x, 0.0, out.y, -out.z);
-    }
-    if numbers.periodic.y == 0u && row == numbers.size.y {
-        let out = leaving[edge_offsets().w + column].flux;
-        return Flux(out.x, out.y, 0.0, out.z);
-    }
-    return flux_z(before, after, column, row - 1);
-}
-
-// Writes the new state of cell `i`, and returns its |u| + c.
-fn update(i: i32, x: Across, north: Flux, south: Flux, dt: f32) -> f32 {
-    let ratio = dt / numbers.cell;
-    let raw = state[i];
-    let depth = max(sane(raw.x, DEEPEST), 0.0);
-    let flowed = -ratio * ((x.east.mass - x.west.mass) + (south.mass - north.mass));
-    var rate = numbers.rain;
-    if numbers.has_sources != 0u {
-        rate += extras[i].z;
-    }
-    // A sink takes no more than there is.
-    let added = max(dt * rate, -max(depth + flowed, 0.0));
-    // Kahan: what the sum cannot hold is carried to the next step, and so is water that left twice.
-    let change = flowed + added + sane(raw.y, DEEPEST);
-    let sum = max(depth + change, 0.0);
-    let carry = change - (sum - depth);
-    if numbers.has_sources != 0u {
-        given[i] = added_to(given[i], added);
-    }
-    let force = vec2(
-        (x.east.before - x.west.after) + x.push.x + (south.tangential - north.tangential),
-        (south.before - north.after) + x.push.y + (x.east.tangential - x.west.tangential),
-    );
-    let momentum = vec2(sane(raw.z, DEEPEST * FASTEST), sane(raw.w, DEEPEST * FASTEST)) - ratio * force;
-    let factor = per_depth(sum);
-    // In a film the discharge follows the reduced speed, so that none is left over when it deepens.
-    let film = select(1.0, sum * factor, sum < FILM);
-    let size = sqrt(momentum.x * momentum.x + momentum.y * momentum.y);
-    let kept = film * kept_by_friction(sum, size, dt, numbers.drag);
-    state_out[i] = vec4(sum, carry, momentum * kept);
-    return max(abs(momentum.x), abs(momentum.y)) * kept * factor + sqrt(GRAVITY * sum);
 }
 
 @compute @workgroup_size(#{GROUP}, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = numbers.size;
-    let column = i32(id.x);
+    let dt = choose_dt();
+    if id.x == 0u && id.y == 0u {
+        tick(dt);
+    }
+    let column = i32(id.x) * COLUMNS;
     let first = i32(id.y) * ROWS;
     if column >= size.x || first >= size.y {
         return;
     }
     let last = min(first + ROWS, size.y);
-    let dt = clock.dt;
-    if dt <= 0.0 {
-        for (var row = first; row < last; row++) {
-            state_out[row * size.x + column] = state[row * size.x + column];
-        }
-        return;
+    if dt > 0.0 {
+        go_down(column, first, last, dt);
+    } else {
+        stay(column, first, last);
     }
+}
+
+fn stay(column: i32, first: i32, last: i32) {
+    let size = numbers.size;
+    for (var row = first; row < last; row++) {
+        for (var k = column; k < min(column + COLUMNS, size.x); k++) {
+            state_out[row * size.x + k] = state[row * size.x + k];
+        }
+    }
+}
+
+fn column_within(column: i32) -> i32 {
+    return within(column, numbers.size.x, numbers.periodic.x);
+}
+
+fn go_down(column: i32, first: i32, last: i32, dt: f32) {
+    let size = numbers.size;
     let ratio = dt / numbers.cell;
-    var north = load_row(column, first - 2);
-    var here = load_row(column, first - 1);
-    var south = load_row(column, first);
-    var faces = reconstruct(here.c, here.w, here.e, north.c, south.c, ratio);
-    var before = faces.south;
-    var x: Across;
-    var entering: Flux;
+    let left = vec4(column_within(column - 2), column_within(column - 1), column, column_within(column + 1));
+    let right = vec4(column_within(column + 2), column_within(column + 3), column_within(column + 4), column_within(column + 5));
+    var north = load_row(left, right, first - 2);
+    var here = load_row(left, right, first - 1);
+    var south = load_row(left, right, first);
+    var c = reconstruct(here.c, here.b, here.d, north.c, south.c, ratio);
+    var d = reconstruct(here.d, here.c, here.e, north.d, south.d, ratio);
+    var e = reconstruct(here.e, here.d, here.f, north.e, south.e, ratio);
+    var f = reconstruct(here.f, here.e, here.g, north.f, south.f, ratio);
+    var around_c: Around;
+    var around_d: Around;
+    var around_e: Around;
+    var around_f: Around;
     var fastest = 0.0;
     for (var row = first; row <= last; row++) {
         north = here;
         here = south;
-        south = load_row(column, row + 1);
-        faces = reconstruct(here.c, here.w, here.e, north.c, south.c, ratio);
-        let northern_flux = northern(before, faces.north, column, row);
+        south = load_row(left, right, row + 1);
+        let above_c = c;
+        let above_d = d;
+        let above_e = e;
+        let above_f = f;
+        c = reconstruct(here.c, here.b, here.d, north.c, south.c, ratio);
+        d = reconstruct(here.d, here.c, here.e, north.d, south.d, ratio);
+        e = reconstruct(here.e, here.d, here.f, north.e, south.e, ratio);
+        f = reconstruct(here.f, here.e, here.g, north.f, south.f, ratio);
+        let over = within(row - 1, size.y, numbers.periodic.y) * size.x;
+        around_c.south = flux_z(above_c.south, c.north, over + left.z);
+        around_d.south = flux_z(above_d.south, d.north, over + left.w);
+        around_e.south = flux_z(above_e.south, e.north, over + right.x);
+        around_f.south = flux_z(above_f.south, f.north, over + right.y);
         if row > first {
-            fastest = max(fastest, update((row - 1) * size.x + column, x, entering, northern_flux, dt));
+            fastest = max(fastest, leave(column, row - 1, above_c, around_c, dt));
+            fastest = max(fastest, leave(column + 1, row - 1, above_d, around_d, dt));
+            fastest = max(fastest, leave(column + 2, row - 1, above_e, around_e, dt));
+            fastest = max(fastest, leave(column + 3, row - 1, above_f, around_f, dt));
         }
-        x = across(north, here, south, faces, column, row, ratio);
-        entering = northern_flux;
-        before = faces.south;
+        let b = reconstruct(here.b, here.a, here.c, north.b, south.b, ratio);
+        let g = reconstruct(here.g, here.f, here.h, north.g, south.g, ratio);
+        let own = within(row, size.y, numbers.periodic.y) * size.x;
+        let bc = flux_x(b.east, c.west, own + left.y);
+        let cd = flux_x(c.east, d.west, own + left.z);
+        let de = flux_x(d.east, e.west, own + left.w);
+        let ef = flux_x(e.east, f.west, own + right.x);
+        let fg = flux_x(f.east, g.west, own + right.y);
+        around_c = Around(bc, cd, around_c.south, around_c.south);
+        around_d = Around(cd, de, around_d.south, around_d.south);
+        around_e = Around(de, ef, around_e.south, around_e.south);
+        around_f = Around(ef, fg, around_f.south, around_f.south);
     }
     atomicMax(&clock.fastest[1u - parity.x], bitcast<u32>(fastest));
+}
+
+// Writes the new state of a cell, if it is one, and returns its signal; that of a border cell is not known yet.
+fn leave(column: i32, row: i32, faces: Faces, around: Around, dt: f32) -> f32 {
+    let size = numbers.size;
+    if column >= size.x {
+        return 0.0;
+    }
+    let is_border = numbers.periodic.x == 0u && (column == 0 || column == size.x - 1)
+        || numbers.periodic.y == 0u && (row == 0 || row == size.y - 1);
+    let signal = update(row * size.x + column, faces, around, dt, !is_border);
+    return select(signal, 0.0, is_border);
 }

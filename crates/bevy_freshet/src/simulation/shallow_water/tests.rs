@@ -84,8 +84,6 @@ fn frame(water: &mut ShallowWater, version: u64, added: f64, steps: u32, held: &
         most_owed: 1e6,
         entering,
         longest,
-        has_walls: water.crests().is_some().into(),
-        has_sources: (!sources.is_empty()).into(),
     };
     let none = || vec![[-1e30_f32; 2]; water.bed().len()];
     let crests: Vec<[f32; 2]> = water.crests().map_or_else(none, Iterator::collect);
@@ -100,6 +98,8 @@ fn frame(water: &mut ShallowWater, version: u64, added: f64, steps: u32, held: &
             fastest: water.fastest_signal(),
         })),
         ground: Some(Arc::new(Ground { version, bed: water.bed().to_vec(), extras })),
+        has_walls: water.crests().is_some(),
+        has_sources: !sources.is_empty(),
         steps,
         held: held.clone(),
     }

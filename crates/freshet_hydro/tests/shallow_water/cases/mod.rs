@@ -2,11 +2,13 @@
 
 pub mod basin;
 pub mod dam_break;
+pub mod edges;
 pub mod order;
 pub mod rest;
 pub mod steady;
 pub mod terrain;
 pub mod volume;
+pub mod walls;
 
 use freshet_hydro::{grid::Grid, shallow_water::ShallowWater};
 use glam::{UVec2, Vec2};
