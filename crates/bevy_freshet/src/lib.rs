@@ -41,8 +41,9 @@ pub mod prelude {
         WaterPlugin, WaterSystems,
         bed::BedShading,
         body::{
-            Fresnel, Water, WaterBed, WaterFlow, WaterFoam, WaterIce, WaterInteraction, WaterLighting, WaterOptics,
-            WaterWaves,
+            DomainSide, Edge, Fresnel, Series, SimulationBackend, SimulationStart, Water, WaterBed, WaterEdge,
+            WaterEdges, WaterFlow, WaterFoam, WaterIce, WaterInteraction, WaterLighting, WaterOptics, WaterSimulation,
+            WaterSource, WaterSources, WaterWall, WaterWalls, WaterWaves,
         },
         interaction::{Disturb, DisturbsWater, DyesWater, WaterTouch, WaterTouchBlocked},
         query::{WaterHit, WaterQuery, WaterSample},
@@ -67,7 +68,7 @@ pub struct WaterPlugin;
 
 impl Plugin for WaterPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((body::BodyPlugin, interaction::InteractionPlugin));
+        app.add_plugins((body::BodyPlugin, interaction::InteractionPlugin, simulation::ShallowWaterPlugin));
         #[cfg(feature = "rapier")]
         app.add_plugins(buoyancy::BuoyancyPlugin);
         if app.get_sub_app(RenderApp).is_some() {

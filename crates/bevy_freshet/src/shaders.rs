@@ -9,11 +9,19 @@ use std::{
 
 /// Every shader of this crate.
 fn shaders() -> Vec<(PathBuf, String)> {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let folders = fs::read_dir(source).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir());
-    let files = folders.flat_map(|folder| fs::read_dir(folder).unwrap()).map(|entry| entry.unwrap().path());
-    let shaders = files.filter(|path| path.extension().is_some_and(|ending| ending == "wgsl"));
-    shaders.map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
+    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];
+    let mut shaders = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "wgsl") {
+                let wgsl = fs::read_to_string(&path).unwrap();
+                shaders.push((path, wgsl));
+            }
+        }
+    }
+    shaders
 }
 
 /// What a library is imported by.

@@ -110,7 +110,7 @@ fn map_of(water: &ResolvedWater, freezing: &Freezing) -> Option<Grid<f32>> {
     let finest = water.bed.as_ref().map_or(0.25 * freezing.unevenness_size, |bed| bed.elevations.cell_size());
     let cell = finest.max((extent.x * extent.y / MOST_CELLS).sqrt()).max(extent.max_element() / 2048.0);
     let size = (extent / cell).ceil().max(Vec2::ONE).as_uvec2();
-    let site = |place| Site { depth: water.still_depth(place), speed: water.open_current(place).length() };
+    let site = |place| Site { depth: water.ground_depth(place), speed: water.open_current(place).length() };
     ice::order_map(size, cell, freezing, site).ok()
 }
 

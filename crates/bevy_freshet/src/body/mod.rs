@@ -8,6 +8,7 @@ mod interaction;
 mod lighting;
 mod optics;
 mod resolved;
+mod simulation;
 mod waves;
 
 pub use bed::{WaterBed, WaterBedError};
@@ -17,14 +18,18 @@ pub use ice::WaterIce;
 pub use interaction::WaterInteraction;
 pub use lighting::WaterLighting;
 pub use optics::{Fresnel, WaterOptics};
-pub(crate) use resolved::ResolvedWater;
+pub(crate) use resolved::{ResolvedBed, ResolvedWater};
+pub use simulation::{
+    CLOSED, DomainSide, Edge, Series, SimulationBackend, SimulationStart, WaterEdge, WaterEdges, WaterSimulation,
+    WaterSource, WaterSources, WaterWall, WaterWalls,
+};
 pub use waves::{WaterWaves, Wave};
 
 use crate::{
     reflection::WaterReflection,
     report::{Reported, forget_despawned},
     schedule::WaterSystems,
-    simulation::{Deposits, FieldFrame, FieldPictures, FieldProgress, FieldWindow},
+    simulation::{Deposits, FieldFrame, FieldPictures, FieldProgress, FieldWindow, ShallowFrame, Simulated},
     surface::WaterSurface,
 };
 use bevy::{app::RunFixedMainLoopSystems, ecs::message::MessageUpdateSystems, prelude::*};
@@ -77,7 +82,15 @@ impl Default for Water {
 fn end_water(removed: On<Remove, Water>, mut commands: Commands) {
     let Ok(mut water) = commands.get_entity(removed.entity) else { return };
     water.try_remove::<(ResolvedWater, FieldWindow, FieldPictures, FieldProgress, Deposits)>();
+    water.try_remove::<(Simulated, ShallowFrame)>();
     water.try_insert(FieldFrame::Off);
+}
+
+/// Without [`WaterSimulation`] the water is still again.
+fn end_simulation(removed: On<Remove, WaterSimulation>, mut commands: Commands) {
+    if let Ok(mut water) = commands.get_entity(removed.entity) {
+        water.try_remove::<(Simulated, ShallowFrame)>();
+    }
 }
 
 /// Registers the components of a water and resolves them for every clock.
@@ -87,6 +100,7 @@ impl Plugin for BodyPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Reported>()
             .add_observer(end_water)
+            .add_observer(end_simulation)
             .add_systems(First, forget_despawned.after(MessageUpdateSystems))
             .add_systems(FixedFirst, resolved::resolve_waters.in_set(WaterSystems::Resolve))
             .add_systems(

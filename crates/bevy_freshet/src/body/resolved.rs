@@ -3,11 +3,12 @@ use super::{
     Water, WaterBed, WaterFlow, WaterIce, WaterWaves,
     frozen::{self, IceMap, ResolvedIce},
 };
-use crate::report::Reported;
+use crate::{report::Reported, simulation::Simulated};
 use bevy::{math::Affine2, prelude::*};
 use freshet_hydro::{
     grid::Grid,
     ice,
+    shallow_water::{Field, FieldSample},
     waves::{self, WaveField},
 };
 use std::sync::Arc;
@@ -35,7 +36,12 @@ pub(crate) struct ResolvedWater {
     pub flow: Option<(Arc<Grid<Vec2>>, f32)>,
     /// The ice, if there is any.
     pub ice: Option<ResolvedIce>,
+    /// The simulated water, if it is simulated, and how old it is, s.
+    pub simulated: Option<(Arc<Field>, f32)>,
 }
+
+/// How far under the ground the surface of a simulated water is put where it is dry, m.
+const DRY: f32 = 0.5;
 
 /// A bed as a water sees it.
 #[derive(Clone, Debug)]
@@ -56,12 +62,32 @@ impl ResolvedWater {
         place.abs().cmple(self.half_size).all() && self.half_size.min_element() > 0.0
     }
 
-    /// Depth of the still water at local `place`, m: negative on dry land, infinite without a bed. Where the bed has no
-    /// data there is no water: minus infinity.
+    /// Depth at local `place` without waves, m: negative on dry land, infinite without a bed. Where the bed has no data there
+    /// is no water: minus infinity.
     pub fn still_depth(&self, place: Vec2) -> f32 {
+        self.ground_depth(place) + self.risen(place)
+    }
+
+    /// How far the ground at local `place` lies below the still level, m: infinite without a bed, minus infinity where it has
+    /// no data.
+    pub fn ground_depth(&self, place: Vec2) -> f32 {
         let Some(bed) = &self.bed else { return f32::INFINITY };
         let elevation = bed.elevations.sample(bed.bed_from_local.transform_point2(place));
         if elevation.is_nan() { f32::NEG_INFINITY } else { self.level - (bed.base + elevation) }
+    }
+
+    /// The simulated water at local `place`; nothing if it is not simulated or dry.
+    pub fn simulated_at(&self, place: Vec2) -> Option<FieldSample> {
+        self.simulated.as_ref().and_then(|(field, age)| field.sample(place, *age))
+    }
+
+    /// How far simulation has raised the surface at local `place` over the still level, m: under the ground where it is dry.
+    pub fn risen(&self, place: Vec2) -> f32 {
+        if self.simulated.is_none() {
+            return 0.0;
+        }
+        let below_ground = || -self.ground_depth(place).clamp(-1e5, 1e5) - DRY;
+        self.simulated_at(place).map_or_else(below_ground, |water| water.level)
     }
 
     /// Share of the waves' height at local `place`.
@@ -85,16 +111,17 @@ impl ResolvedWater {
     }
 
     /// The particle at rest that is above local `place`, and the height of the surface there over the still water's, m, as if
-    /// there were water everywhere: waves, lowered by ice.
+    /// there were water everywhere: waves on what is simulated, lowered by ice.
     pub fn surface(&self, place: Vec2) -> (Vec2, f32) {
         let rest = self.waves.rest_below(place, |rest| self.fade(rest));
-        (rest, self.waves.displacement(rest, self.fade(rest)).y - self.drop(rest))
+        (rest, self.waves.displacement(rest, self.fade(rest)).y - self.drop(rest) + self.risen(rest))
     }
 
     /// Bounds of the height of the surface over the still water's, m: the lowest it can be, and the highest.
     pub fn elevations(&self) -> (f32, f32) {
         let amplitude = self.waves.total_amplitude();
-        (-amplitude - self.ice.as_ref().map_or(0.0, ResolvedIce::deepest_drop), amplitude)
+        let (lowest, highest) = self.simulated.as_ref().map_or((0.0, 0.0), |(field, _)| field.levels());
+        (lowest - amplitude - self.ice.as_ref().map_or(0.0, ResolvedIce::deepest_drop), highest + amplitude)
     }
 
     /// The middle of the still surface, turned as the water.
@@ -110,6 +137,9 @@ impl ResolvedWater {
 
     /// Current at local `place` as it is without ice, local xz, m/s.
     pub fn open_current(&self, place: Vec2) -> Vec2 {
+        if self.simulated.is_some() {
+            return self.drift + self.simulated_at(place).map_or(Vec2::ZERO, |water| water.velocity);
+        }
         let Some((map, scale)) = &self.flow else { return self.drift };
         let share = waves::shallow_fade(self.still_depth(place), WaterFlow::BANK_DEPTH);
         let mapped = map.sample(place);
@@ -138,9 +168,10 @@ pub(crate) fn resolve_waters(
         &GlobalTransform,
         &mut ResolvedWater,
         Option<(&WaterIce, &mut IceMap)>,
+        Option<&Simulated>,
     )>,
 ) {
-    for (entity, water, waves, flow, pose, mut resolved, ice) in &mut waters {
+    for (entity, water, waves, flow, pose, mut resolved, ice, simulated) in &mut waters {
         let world_from_local = yaw_frame(pose);
         let mut next = ResolvedWater {
             world_from_local,
@@ -157,6 +188,7 @@ pub(crate) fn resolve_waters(
             next.flow = flow.map.clone().map(|map| (map, scale));
         }
         next.bed = bed_below(&next, &beds);
+        next.simulated = simulated.and_then(Simulated::field);
         if let Some((ice, mut map)) = ice {
             next.ice = frozen::resolve(entity, ice, &mut map, &next, &mut reported);
         }

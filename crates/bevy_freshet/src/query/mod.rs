@@ -21,6 +21,8 @@ pub struct WaterSample {
     pub depth: f32,
     /// Thickness of the ice, m; 0 on open water.
     pub ice: f32,
+    /// How long ago the state was simulated from which this was carried on, s; 0 if the water is not simulated.
+    pub age: f32,
 }
 
 /// Answers where the water is: the same surface that is drawn, at the clock of the schedule that asks (the fixed clock
@@ -58,7 +60,7 @@ fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSam
     let (rest, elevation) = water.surface(local);
     let fade = water.fade(rest);
     let height = water.level + elevation;
-    let depth = water.still_depth(local) + elevation;
+    let depth = water.ground_depth(local) + elevation;
     if depth <= 0.0 {
         return None;
     }
@@ -67,13 +69,19 @@ fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSam
         vec3(turned.x, v.y, turned.y)
     };
     let current = water.current(local);
-    let velocity = vec3(current.x, 0.0, current.y) + water.waves.velocity(rest, fade);
+    let flowing = water.simulated_at(rest).unwrap_or_default();
+    // The surface of flowing water moves with it: w = ∂η/∂t + u·∇η.
+    let rises = flowing.rising + current.dot(flowing.slope);
+    let velocity = vec3(current.x, rises, current.y) + water.waves.velocity(rest, fade);
+    let normal = water.waves.normal(rest, fade);
+    let tilted = normal - vec3(flowing.slope.x, 0.0, flowing.slope.y) * normal.y;
     Some(WaterSample {
         water: entity,
         height,
-        normal: to_world(water.waves.normal(rest, fade)),
+        normal: to_world(tilted.normalize()),
         velocity: to_world(velocity),
         depth,
         ice: water.ice_thickness(local),
+        age: water.simulated.as_ref().map_or(0.0, |(_, age)| *age),
     })
 }

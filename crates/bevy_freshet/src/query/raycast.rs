@@ -8,6 +8,9 @@ const TOLERANCE: f32 = 2e-5;
 /// Most steps towards the surface. A ray that grazes crests takes small ones.
 const MAX_STEPS: u32 = 256;
 
+/// Slope, over that within the water, of a simulated surface between its shore and where it is put under the ground.
+const SHORE: f32 = 2.0;
+
 /// Where a ray meets the water.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WaterHit {
@@ -90,7 +93,8 @@ fn bisect(mut from: f32, mut to: f32, first: f32, height: impl Fn(f32) -> f32) -
 fn steepest_slope(water: &ResolvedWater) -> f32 {
     let steepness = water.waves.total_steepness().min(0.95);
     let shelving = if water.bed.is_some() || water.ice.is_some() { 0.3 } else { 0.0 };
-    steepness / (1.0 - steepness) + shelving
+    let simulated = water.simulated.as_ref().map_or(0.0, |(field, _)| field.steepest() + SHORE);
+    steepness / (1.0 - steepness) + shelving + simulated
 }
 
 /// Where a ray from `origin` is inside the box from −`half` to `half`, at most `max` away.

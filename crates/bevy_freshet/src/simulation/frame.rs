@@ -34,6 +34,7 @@ pub(crate) struct FieldWork {
     pub bed: Option<AssetId<Image>>,
     pub flow: Option<AssetId<Image>>,
     pub ice_order: Option<AssetId<Image>>,
+    pub simulated: [Option<AssetId<Image>>; 2],
     /// Rings and matter.
     pub pictures: [AssetId<Image>; 2],
     pub deposits: GpuDeposits,

@@ -2,7 +2,6 @@
 #import freshet::simulation::numbers::{numbers, inside, index, place}
 #import freshet::surface::bindings::surface
 #import freshet::surface::ground as surveyed
-#import freshet::surface::types
 
 @group(0) @binding(1) var<storage, read_write> ground: array<vec4<f32>>;    // current (m/s), depth (m), shear (1/s)
 @group(0) @binding(2) var<storage, read_write> celerity: array<f32>;        // c² of the rings, m²/s²; 0 where it is dry
@@ -13,11 +12,7 @@ fn depth_at(at: vec2<f32>) -> f32 {
 }
 
 fn current_at(at: vec2<f32>) -> vec2<f32> {
-    if (surface.flags & types::FLAG_FLOW) == 0u {
-        return numbers.drift;
-    }
-    let bank = smoothstep(0.0, surface.bank_depth, surveyed::still_depth(at));
-    return numbers.drift + surveyed::mapped_current(at) * (numbers.flow_scale * bank);
+    return numbers.drift + surveyed::current(at, surveyed::still_depth(at)) * numbers.flow_scale;
 }
 
 @compute @workgroup_size(#{GROUP}, #{GROUP})

@@ -31,6 +31,7 @@ mod window;
 pub(crate) use deposits::{Deposits, SilhouetteCell, Stroke};
 pub(crate) use frame::FieldFrame;
 pub(crate) use progress::FieldProgress;
+pub(crate) use shallow_water::{ShallowFrame, ShallowWaterPlugin, Simulated};
 pub(crate) use tiles::{NARROWEST, REACH};
 pub(crate) use window::FieldWindow;
 

@@ -83,7 +83,11 @@ impl GpuNumbers {
             drift: water.drift,
             absorbs: window.open_sides(water.half_size),
             cell: window.cell,
-            flow_scale: water.flow.as_ref().map_or(0.0, |(_, scale)| *scale),
+            flow_scale: match (&water.simulated, &water.flow) {
+                (Some(_), _) => 1.0,
+                (None, Some((_, scale))) => *scale,
+                (None, None) => 0.0,
+            },
             open_below: transport::OPEN_BELOW,
             dye_mixing: DYE_MIXING,
             calm_shore: foam::CALM_SHORE,

@@ -77,6 +77,7 @@ struct Images<'a> {
     bed: &'a GpuImage,
     flow: &'a GpuImage,
     ice_order: &'a GpuImage,
+    simulated: [&'a GpuImage; 2],
     pictures: [&'a GpuImage; 2],
 }
 
@@ -89,6 +90,7 @@ impl<'a> Images<'a> {
             bed: or_fallback(work.bed)?,
             flow: or_fallback(work.flow)?,
             ice_order: or_fallback(work.ice_order)?,
+            simulated: [or_fallback(work.simulated[0])?, or_fallback(work.simulated[1])?],
             pictures: [images.get(rings)?, images.get(matter)?],
         })
     }
@@ -187,9 +189,17 @@ impl Surroundings<'_> {
     fn run_on_water(&self, stage: &Stage, state: &FieldState, buffers: &[&Buffer], workgroups: UVec2) -> Run {
         let mut run = self.run(stage, state, buffers, workgroups);
         let layout = self.cache.get_bind_group_layout(&self.stages.water);
-        let Images { bed, flow, ice_order, .. } = &self.images;
-        let [bed, flow, ice_order] = [bed, flow, ice_order].map(|image| &image.texture_view);
-        let entries = BindGroupEntries::with_indices(((0, &state.surface), (8, bed), (9, flow), (14, ice_order)));
+        let Images { bed, flow, ice_order, simulated: [level, slopes], .. } = &self.images;
+        let [bed, flow, ice_order, level, slopes] =
+            [bed, flow, ice_order, level, slopes].map(|image| &image.texture_view);
+        let entries = BindGroupEntries::with_indices((
+            (0, &state.surface),
+            (8, bed),
+            (9, flow),
+            (14, ice_order),
+            (16, level),
+            (17, slopes),
+        ));
         run.groups.push(self.device.create_bind_group("water_below", &layout, &entries));
         run
     }

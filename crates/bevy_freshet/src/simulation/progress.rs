@@ -1,6 +1,6 @@
 //! How far the fields of a water have come, and what is to be done in a frame.
 use super::{
-    Deposits, FieldPictures, FieldWindow, Stroke,
+    Deposits, FieldPictures, FieldWindow, Simulated, Stroke,
     frame::{FieldFrame, FieldWork, picture},
     numbers::{GpuNumbers, Parts},
     tiles::{Drafts, GpuDeposits},
@@ -71,17 +71,18 @@ pub(super) fn step_fields(
     mut reported: ResMut<Reported>,
     mut waters: Query<(
         Entity,
-        (&WaterInteraction, &WaterFoam, &ResolvedWater, &FieldWindow),
+        (&WaterInteraction, &WaterFoam, &ResolvedWater, &FieldWindow, Option<&Simulated>),
         (&mut Deposits, &mut FieldProgress, &mut FieldPictures, &mut FieldFrame),
     )>,
 ) {
-    for (entity, (settings, foam, water, window), fields) in &mut waters {
+    for (entity, (settings, foam, water, window, simulated), fields) in &mut waters {
         let (mut deposits, mut progress, mut pictures, mut frame) = fields;
         *frame = if window.size == UVec2::ZERO {
             switch_off(&mut progress, &mut pictures)
         } else {
             progress.resize(window, &mut pictures, &mut images);
-            let settings = Settings { entity, interaction: settings, foam, water, window };
+            let simulated = simulated.and_then(|simulated| simulated.pictures.as_ref());
+            let settings = Settings { entity, interaction: settings, foam, water, window, simulated };
             let work = progress.advance(
                 &settings,
                 &mut deposits,
@@ -103,6 +104,7 @@ struct Settings<'a> {
     foam: &'a WaterFoam,
     water: &'a ResolvedWater,
     window: &'a FieldWindow,
+    simulated: Option<&'a [Handle<Image>; 2]>,
 }
 
 fn switch_off(progress: &mut FieldProgress, pictures: &mut FieldPictures) -> FieldFrame {
@@ -184,8 +186,12 @@ impl FieldProgress {
         images: &mut Assets<Image>,
         reported: &mut Reported,
     ) -> Option<(FieldWork, Parts, bool)> {
-        let &Settings { entity, interaction, foam, water, window } = settings;
-        let fastest = water.flow.as_ref().map_or(0.0, |(map, _)| textures.fastest(map));
+        let &Settings { entity, interaction, foam, water, window, simulated } = settings;
+        let fastest = match (&water.simulated, &water.flow) {
+            (Some((field, _)), _) => field.fastest(),
+            (None, Some((map, _))) => textures.fastest(map),
+            (None, None) => 0.0,
+        };
         let (numbers, parts) = GpuNumbers::new(entity, interaction, foam, water, window, fastest, reported);
         let mut surface = GpuSurface::default();
         write_water(&mut surface, water);
@@ -195,7 +201,8 @@ impl FieldProgress {
         // Waves move all the time, and ice comes and goes; they do not change the ground.
         let still = GpuSurface { waves: default(), ice_freezing: 0.0, ..surface.clone() };
         let ground = Ground { window: *window, numbers: numbers.clone(), surface: still, textures: [bed, flow] };
-        let moved = ground != self.ground;
+        // Simulated water moves all the time.
+        let moved = ground != self.ground || water.simulated.is_some();
         if moved {
             self.ground = ground;
             self.version += 1;
@@ -208,6 +215,7 @@ impl FieldProgress {
             bed,
             flow,
             ice_order,
+            simulated: simulated.map_or([None, None], |pair| pair.each_ref().map(|picture| Some(picture.id()))),
             pictures: [pictures.rings.as_ref()?.id(), pictures.matter.as_ref()?.id()],
             deposits: default(),
             ground: self.version,

@@ -24,7 +24,8 @@ pub(super) struct Stage {
 /// All stages.
 #[derive(Resource)]
 pub(super) struct Stages {
-    /// Bindings 0, 8, 9 and 14 of the surface's material: its numbers, bed, current and order of freezing.
+    /// Bindings 0, 8, 9, 14, 16 and 17 of the surface's material: its numbers, bed, current, order of freezing and the
+    /// simulated water.
     pub water: BindGroupLayoutDescriptor,
     pub ground: Stage,
     pub bodies: Stage,
@@ -105,8 +106,10 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
 fn water_layout() -> BindGroupLayoutDescriptor {
     let grid = texture_2d(TextureSampleType::Float { filterable: false });
     let surface = storage_buffer_read_only_sized(false, Some(GpuSurface::min_size()));
-    let entries =
-        BindGroupLayoutEntries::with_indices(ShaderStages::COMPUTE, ((0, surface), (8, grid), (9, grid), (14, grid)));
+    let entries = BindGroupLayoutEntries::with_indices(
+        ShaderStages::COMPUTE,
+        ((0, surface), (8, grid), (9, grid), (14, grid), (16, grid), (17, grid)),
+    );
     BindGroupLayoutDescriptor::new("water_below", &entries)
 }
 

@@ -19,3 +19,5 @@
 @group(#{MATERIAL_BIND_GROUP}) @binding(13) var foam: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(14) var ice_order: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(15) var ice_tile: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(16) var simulated: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(17) var simulated_slopes: texture_2d<f32>;

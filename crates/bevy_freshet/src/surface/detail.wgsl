@@ -30,7 +30,7 @@ fn slope(drift: Drift, footprint: Footprint) -> Slope {
         return Slope(vec2(0.0), 0.0);
     }
     var ripples = layers(drift.first, footprint);
-    if (surface.flags & types::FLAG_FLOW) != 0u {
+    if (surface.flags & (types::FLAG_FLOW | types::FLAG_SIMULATED)) != 0u {
         let second = layers(drift.second, footprint);
         let weight = drift.weight;
         let mean_square = dot(vec2(ripples.z, second.z), weight * weight);

@@ -16,14 +16,14 @@ struct Drift {
     first: vec2<f32>,    // local xz, units: m
     second: vec2<f32>,
     weight: vec2<f32>,   // the squares sum to one: the variance of two independent patterns stays
-    current: vec2<f32>,  // of the flow map, without its factor: local xz, units: m/s
+    current: vec2<f32>,  // of map or simulation, without the map's factor: local xz, units: m/s
 }
 
 fn drift(place: vec2<f32>, depth: f32) -> Drift {
-    if (surface.flags & types::FLAG_FLOW) == 0u {
+    if (surface.flags & (types::FLAG_FLOW | types::FLAG_SIMULATED)) == 0u {
         return Drift(place, place, vec2(1.0, 0.0), vec2(0.0));
     }
-    let current = ground::mapped_current(place) * smoothstep(0.0, surface.bank_depth, depth);
+    let current = ground::current(place, depth);
     // The phase differs from place to place, so that the fades do not pulse in step.
     let offset = 0.25 * (sin(place.x * 0.213 + place.y * 0.079) + sin(place.y * 0.187 - place.x * 0.061));
     let phase = fract(vec2(surface.flow_phase + offset) + vec2(0.0, 0.5));

@@ -70,7 +70,7 @@ fn cover(drift: Drift, density: f32, footprint: Footprint) -> f32 {
     }
     let current = surface.current_scale * drift.current + surface.current_drift;
     var variate = froth(drift.first, current, footprint);
-    if (surface.flags & types::FLAG_FLOW) != 0u {
+    if (surface.flags & (types::FLAG_FLOW | types::FLAG_SIMULATED)) != 0u {
         let second = froth(drift.second, current, footprint);
         let weight = drift.weight;
         variate = vec2(dot(vec2(variate.x, second.x), weight), dot(vec2(variate.y, second.y), weight * weight));

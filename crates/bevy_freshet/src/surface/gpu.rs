@@ -93,6 +93,9 @@ pub(crate) struct GpuSurface {
     pub ice_snow_albedo: Vec3,
     pub ice_roughness: f32,
     pub ice_scale: f32,
+
+    pub simulated_size: Vec2,
+    pub simulated_cell: f32,
 }
 
 impl GpuSurface {
@@ -103,6 +106,7 @@ impl GpuSurface {
     pub const SUNLIGHT: u32 = 16;
     pub const FIELD: u32 = 32;
     pub const ICE: u32 = 4096;
+    pub const SIMULATED: u32 = 8192;
 }
 
 #[cfg(test)]
@@ -129,6 +133,7 @@ mod tests {
             ("SUNLIGHT", GpuSurface::SUNLIGHT),
             ("FIELD", GpuSurface::FIELD),
             ("ICE", GpuSurface::ICE),
+            ("SIMULATED", GpuSurface::SIMULATED),
         ];
         for (name, value) in flags {
             assert!(WGSL.contains(&format!("const FLAG_{name}: u32 = {value}u;")), "{name}");

@@ -1,7 +1,8 @@
-// Bed elevation and current on their grids, sampled as `freshet_hydro::grid::Grid::sample` does.
+// Bed elevation and current on their grids, sampled as `freshet_hydro::grid::Grid::sample` does, and the simulated water, sampled
+// as `freshet_hydro::shallow_water::Field` is.
 #define_import_path freshet::surface::ground
 
-#import freshet::surface::bindings::{surface, bed, flow}
+#import freshet::surface::bindings::{surface, bed, flow, simulated, simulated_slopes}
 #import freshet::surface::types
 
 // The four cells around a place and the weights between them.
@@ -21,8 +22,94 @@ fn lerp(a: vec2<f32>, b: vec2<f32>, t: f32) -> vec2<f32> {
     return a + (b - a) * t;
 }
 
-// Depth of the still water at local `rest`, m: negative on dry land, very deep without a bed or where it has no data.
+// The simulated water at a place.
+struct Simulated {
+    level: f32,             // over the still level, units: m
+    velocity: vec2<f32>,    // units: m/s
+    is_wet: bool,
+}
+
+// Depth from which on a cell counts as wet, units: m.
+const WET: f32 = 1e-3;
+// How far under the ground the surface of a simulated water is put where it is dry, units: m.
+const DRY: f32 = 0.5;
+
+// Shares of the four cells around a place: bilinear.
+fn shares(t: vec2<f32>) -> vec4<f32> {
+    return vec4((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
+}
+
+fn simulated_at(place: vec2<f32>) -> Simulated {
+    let c = cells_around(place, surface.simulated_cell, surface.simulated_size);
+    let nw = textureLoad(simulated, c.low, 0);
+    let ne = textureLoad(simulated, vec2(c.high.x, c.low.y), 0);
+    let sw = textureLoad(simulated, vec2(c.low.x, c.high.y), 0);
+    let se = textureLoad(simulated, c.high, 0);
+    let share = shares(c.t);
+    let is_wet = vec4(nw.y, ne.y, sw.y, se.y) > vec4(WET);
+    let wet = select(vec4(0.0), share, is_wet);
+    let sum = dot(wet, vec4(1.0));
+    if sum <= 1e-4 {
+        return Simulated(0.0, vec2(0.0), false);
+    }
+    let levels = vec4(nw.x, ne.x, sw.x, se.x);
+    let mean = dot(wet, levels) / sum;
+    // A dry cell above the water is a bank, up which it does not climb; one below is ground towards which a front falls.
+    let level = dot(share, select(min(levels, vec4(mean)), levels, is_wet));
+    let velocity = (wet.x * nw.zw + wet.y * ne.zw + wet.z * sw.zw + wet.w * se.zw) / sum;
+    return Simulated(level, velocity, true);
+}
+
+// Slope of the simulated level at local `place`, local xz.
+fn simulated_slope(place: vec2<f32>) -> vec2<f32> {
+    if (surface.flags & types::FLAG_SIMULATED) == 0u {
+        return vec2(0.0);
+    }
+    let c = cells_around(place, surface.simulated_cell, surface.simulated_size);
+    var corners = array(c.low, vec2(c.high.x, c.low.y), vec2(c.low.x, c.high.y), c.high);
+    var share = shares(c.t);
+    var slope = vec2(0.0);
+    var sum = 0.0;
+    for (var k = 0; k < 4; k++) {
+        let wet = select(0.0, share[k], textureLoad(simulated, corners[k], 0).y > WET);
+        slope += wet * textureLoad(simulated_slopes, corners[k], 0).xy;
+        sum += wet;
+    }
+    return slope / max(sum, 1e-4);
+}
+
+// Depth at local `rest` without waves, m: negative on dry land, very deep without a bed or where it has no data.
 fn still_depth(rest: vec2<f32>) -> f32 {
+    return ground_depth(rest) + risen(rest);
+}
+
+// How far simulation has raised the surface at local `rest` over the still level, m: under the ground where it is dry.
+fn risen(rest: vec2<f32>) -> f32 {
+    if (surface.flags & types::FLAG_SIMULATED) == 0u {
+        return 0.0;
+    }
+    let water = simulated_at(rest);
+    return select(-clamp(ground_depth(rest), -1e5, 1e5) - DRY, water.level, water.is_wet);
+}
+
+// Whether there is water at local `place`, as far as it is simulated.
+fn is_wet(place: vec2<f32>) -> bool {
+    return (surface.flags & types::FLAG_SIMULATED) == 0u || simulated_at(place).is_wet;
+}
+
+// Current at local `place` in water of `depth`, local xz, m/s: that of the simulation, or that of the flow map without its factor.
+fn current(place: vec2<f32>, depth: f32) -> vec2<f32> {
+    if (surface.flags & types::FLAG_SIMULATED) != 0u {
+        return simulated_at(place).velocity;
+    }
+    if (surface.flags & types::FLAG_FLOW) != 0u {
+        return mapped_current(place) * smoothstep(0.0, surface.bank_depth, depth);
+    }
+    return vec2(0.0);
+}
+
+// How far the ground at local `rest` lies below the still level, m: very far without a bed, far above where it has no data.
+fn ground_depth(rest: vec2<f32>) -> f32 {
     if (surface.flags & types::FLAG_BED) == 0u {
         return 1e6;
     }

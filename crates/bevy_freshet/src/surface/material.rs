@@ -43,6 +43,10 @@ pub(crate) struct SurfaceMaterial {
     pub ice_order: Option<Handle<Image>>,
     #[texture(15)]
     pub ice_tile: Option<Handle<Image>>,
+    #[texture(16, sample_type = "float", filterable = false)]
+    pub simulated: Option<Handle<Image>>,
+    #[texture(17, sample_type = "float", filterable = false)]
+    pub simulated_slopes: Option<Handle<Image>>,
 }
 
 impl SurfaceMaterial {

@@ -55,7 +55,12 @@ pub(crate) fn advance_ripples(
         ripples.carried += water.drift.as_dvec2() * step;
         ripples.size = size;
         // The fastest water drifts by a fixed share of a tile in a cycle: nothing is stretched far.
-        let fastest = water.flow.as_ref().map_or(0.0, |(map, scale)| ground.fastest(map) * scale.abs());
+        let fastest = match (&water.simulated, &water.flow) {
+            // In powers of two, as every change of the cycle shifts the patterns.
+            (Some((field, _)), _) => field.fastest().max(0.25).log2().ceil().exp2(),
+            (None, Some((map, scale))) => ground.fastest(map) * scale.abs(),
+            (None, None) => 0.0,
+        };
         ripples.cycle = (DRIFT_TILES * size / fastest.max(1e-3)).min(20.0);
         ripples.phase = (ripples.phase + step / f64::from(ripples.cycle)).fract();
     }

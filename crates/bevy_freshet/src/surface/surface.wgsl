@@ -43,7 +43,7 @@ fn vertex(in: Vertex) -> Fragment {
     let fade = waves::shallow_fade(ground::still_depth(rest)) * felt.open;
     let moved = waves::displacement(rest, fade, mesh::spacing_at(rest - surface.mesh_center));
     let xz = surface.world_from_local * (rest + moved.xz) + surface.world_origin;
-    let world = vec3(xz.x, surface.level - ice::drop(felt.thickness) + moved.y, xz.y);
+    let world = vec3(xz.x, surface.level + ground::risen(rest) - ice::drop(felt.thickness) + moved.y, xz.y);
     return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest);
 }
 
@@ -67,7 +67,8 @@ fn facet(
     let spacing = max(length(footprint.x), length(footprint.y));
     let swell = waves::slope(rest, waves::shallow_fade(depth) * open, spacing);
     let ripples = detail::slope(drift, footprint);
-    let slope = surface.world_from_local * (swell.slope + (ripples.slope + rings) * open);
+    let flowing = ground::simulated_slope(rest);
+    let slope = surface.world_from_local * (swell.slope + flowing + (ripples.slope + rings) * open);
     return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance * open * open);
 }
 
@@ -91,7 +92,7 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
     optics::dye = fields.dye;
     let behind = scene::behind(pixel);
     // Where the bed has no data there is no water.
-    if still_depth < NO_DATA_DEPTH {
+    if still_depth < NO_DATA_DEPTH || !ground::is_wet(in.rest) {
         discard;
     }
     if !from_above {

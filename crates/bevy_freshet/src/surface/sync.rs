@@ -233,6 +233,8 @@ pub(crate) fn sync_surfaces(
                 foam: assets.foam.clone(),
                 ice_order: None,
                 ice_tile: None,
+                simulated: None,
+                simulated_slopes: None,
             })),
             // Placed and shown from the next frame on, when it is written for the first time.
             Visibility::Hidden,

@@ -91,6 +91,9 @@ struct Surface {
     ice_snow_albedo: vec3<f32>,
     ice_roughness: f32,             // slope variance of bare ice
     ice_scale: f32,                 // patterns per metre
+
+    simulated_size: vec2<f32>,      // cells of the simulated water
+    simulated_cell: f32,            // units: m
 }
 
 const FLAG_MIRROR: u32 = 1u;
@@ -100,6 +103,7 @@ const FLAG_FOG: u32 = 8u;
 const FLAG_SUNLIGHT: u32 = 16u;
 const FLAG_FIELD: u32 = 32u;
 const FLAG_ICE: u32 = 4096u;
+const FLAG_SIMULATED: u32 = 8192u;
 
 const VIEW_WATER: u32 = 0u;
 const VIEW_REFLECTION: u32 = 1u;

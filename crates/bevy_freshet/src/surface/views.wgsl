@@ -14,12 +14,7 @@ const ARROW_PIXELS: f32 = 24.0;
 
 // The current at local `place`, local xz, m/s.
 fn current(place: vec2<f32>, still_depth: f32) -> vec2<f32> {
-    var velocity = surface.current_drift;
-    if (surface.flags & types::FLAG_FLOW) != 0u {
-        let share = smoothstep(0.0, surface.bank_depth, still_depth);
-        velocity += surface.current_scale * share * ground::mapped_current(place);
-    }
-    return velocity;
+    return surface.current_drift + surface.current_scale * ground::current(place, still_depth);
 }
 
 // The fully saturated colour at `turn` (0…1) around the wheel: red, yellow, green, cyan, blue, magenta.

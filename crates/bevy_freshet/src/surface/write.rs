@@ -14,7 +14,7 @@ use crate::{
     body::{Fresnel, ResolvedWater, WaterFlow, WaterFoam, WaterIce, WaterLighting, WaterOptics},
     reflection::{MirrorKey, Mirrors, WaterReflection},
     report::Reported,
-    simulation::{FieldPictures, FieldWindow},
+    simulation::{FieldPictures, FieldWindow, Simulated},
 };
 use bevy::{
     asset::RenderAssetUsages,
@@ -40,7 +40,7 @@ type Waters<'w, 's> = Query<
         &'static WaterReflection,
         (&'static WaterFoam, &'static FieldWindow, &'static FieldPictures),
         &'static WaterLighting,
-        Option<&'static WaterIce>,
+        (Option<&'static WaterIce>, Option<&'static Simulated>),
     ),
 >;
 
@@ -66,7 +66,17 @@ pub(super) fn write_surfaces(
     let plain_sky = plain_sky.get_or_insert_with(|| images.add(white_cube())).clone();
     for (surface, shape, material_handle) in &surfaces {
         let (Ok(water), Some(viewer)) = (waters.get(surface.water), viewers.get(surface.viewer)) else { continue };
-        let (entity, resolved, settings, ripples, optics, reflection, (foam, window, pictures), lighting, ice) = water;
+        let (
+            entity,
+            resolved,
+            settings,
+            ripples,
+            optics,
+            reflection,
+            (foam, window, pictures),
+            lighting,
+            (ice, simulated),
+        ) = water;
         let mut gpu = GpuSurface::default();
         let mut textures = Textures::default();
         write_frame(&mut gpu, resolved, shape, &viewer);
@@ -81,7 +91,11 @@ pub(super) fn write_surfaces(
         write_sky(&mut gpu, &mut textures, &viewer, &clear_color, &plain_sky, &assets);
 
         let Some(material) = materials.get(material_handle) else { continue };
+        let [level, slopes] =
+            simulated.and_then(|simulated| simulated.pictures.clone()).map_or([None, None], |p| p.map(Some));
         let wanted = SurfaceMaterial {
+            simulated: level,
+            simulated_slopes: slopes,
             mirror: textures.mirror,
             sky: textures.sky,
             sky_light: textures.sky_light,
@@ -210,7 +224,12 @@ pub(crate) fn write_ground(
         bed_texture = Some(ground.bed(&bed.elevations, images));
     }
     gpu.current_drift = water.drift;
-    if let Some((map, scale)) = &water.flow {
+    if let Some((field, _)) = &water.simulated {
+        gpu.flags |= GpuSurface::SIMULATED;
+        gpu.simulated_size = field.size().as_vec2();
+        gpu.simulated_cell = field.cell_size();
+        gpu.current_scale = 1.0;
+    } else if let Some((map, scale)) = &water.flow {
         gpu.flags |= GpuSurface::FLOW;
         gpu.current_scale = *scale;
         gpu.flow_cell = map.cell_size();

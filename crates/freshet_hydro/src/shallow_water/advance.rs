@@ -39,12 +39,7 @@ impl ShallowWater {
         }
         let Forcing { rain, entering, longest_step, .. } = self.forcing();
         let dt = self.choose_dt(most, entering, longest_step);
-        let numbers = Numbers {
-            dt,
-            ratio: dt / self.cell_size,
-            drag: GRAVITY * self.manning * self.manning,
-            rain,
-        };
+        let numbers = Numbers { dt, ratio: dt / self.cell_size, drag: GRAVITY * self.manning * self.manning, rain };
         let around = step::Surround {
             size: self.size,
             bed: &self.bed,

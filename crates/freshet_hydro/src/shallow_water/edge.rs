@@ -44,9 +44,7 @@ pub(super) fn flux(inside: Side, edge: EdgeCell) -> Flux {
     let bed = inside.level - inside.depth;
     match edge {
         EdgeCell::Open if inside.normal > 0.0 => through(inside, inside.depth, inside.normal),
-        EdgeCell::Wall | EdgeCell::Open => {
-            Flux { before: wall(inside.depth, inside.normal), ..Flux::default() }
-        }
+        EdgeCell::Wall | EdgeCell::Open => Flux { before: wall(inside.depth, inside.normal), ..Flux::default() },
         EdgeCell::Still(level) => {
             let outside = Side { depth: (level - bed).max(0.0), level: level.max(bed), normal: 0.0, tangential: 0.0 };
             riemann(inside, outside, f32::NEG_INFINITY)

@@ -5,6 +5,7 @@ mod balance;
 mod edge;
 mod edges;
 mod exchange;
+mod field;
 mod scheme;
 mod series;
 mod source;
@@ -16,6 +17,7 @@ pub use balance::Balance;
 pub use edge::DomainSide;
 pub use edges::{Edge, EdgePart};
 pub use exchange::{Forcing, Restored};
+pub use field::{Field, FieldSample, WET};
 pub use scheme::{CLOSED, FILM};
 pub use series::Series;
 pub use source::PointSource;
@@ -225,7 +227,7 @@ impl ShallowWater {
     /// # Errors
     /// [`ShallowWaterError::Number`] if a depth would not be finite.
     pub fn fill(&mut self, level: f32) -> Result<(), ShallowWaterError> {
-        self.set_water(|_, bed| ((level - bed).max(0.0), Vec2::ZERO))
+        self.set_water(|_, bed| (if level < bed { 0.0 } else { level - bed }, Vec2::ZERO))
     }
 
     /// Changes the bed under the water: every depth stays, so no water is made or lost.
@@ -264,6 +266,11 @@ impl ShallowWater {
             DomainSide::West | DomainSide::North => {}
         }
         Ok(())
+    }
+
+    /// Takes all walls away.
+    pub fn clear_walls(&mut self) {
+        self.crests = None;
     }
 
     /// Sets Manning's n of the bed, s/m^⅓, ≥ 0 (default 0). Earth rivers have 0.025…0.05 (Chow 1959).

@@ -49,7 +49,11 @@ impl Series {
                 finite && !pairs.is_empty() && pairs.windows(2).all(|pair| pair[0].0 < pair[1].0)
             }
             Self::Tide { mean, amplitude, period, high_water } => {
-                mean.is_finite() && amplitude.is_finite() && high_water.is_finite() && period.is_finite() && *period > 0.0
+                mean.is_finite()
+                    && amplitude.is_finite()
+                    && high_water.is_finite()
+                    && period.is_finite()
+                    && *period > 0.0
             }
         }
     }

@@ -1,6 +1,8 @@
 //! Rows of a strip of columns: the scheme, one operation after the other along whole rows, so that the compiler turns each
 //! loop into vector instructions.
-use super::scheme::{DEEPEST, FASTEST, FILM, Flux, Side, half_slope, kept_by_friction, max, per_depth, riemann, sane, wall};
+use super::scheme::{
+    DEEPEST, FASTEST, FILM, Flux, Side, half_slope, kept_by_friction, max, per_depth, riemann, sane, wall,
+};
 use crate::waves::GRAVITY;
 
 /// Cells beyond a strip that its cells need.
@@ -148,12 +150,7 @@ impl Sides {
     }
 
     pub fn get(&self, k: usize) -> Side {
-        Side {
-            depth: self.depth[k],
-            level: self.level[k],
-            normal: self.normal[k],
-            tangential: self.tangential[k],
-        }
+        Side { depth: self.depth[k], level: self.level[k], normal: self.normal[k], tangential: self.tangential[k] }
     }
 }
 
@@ -240,7 +237,16 @@ impl Faces {
 type SideBlocks<'a> = (&'a mut Block, &'a mut Block, &'a mut Block, &'a mut Block);
 
 #[inline(always)]
-fn sides(before: SideBlocks, after: SideBlocks, push: &mut Block, (h, l): (&Block, &Block), (hs, ls): (&Block, &Block), h_t: &Block, (n, ns): (&Block, &Block), (t, ts): (&Block, &Block)) {
+fn sides(
+    before: SideBlocks,
+    after: SideBlocks,
+    push: &mut Block,
+    (h, l): (&Block, &Block),
+    (hs, ls): (&Block, &Block),
+    h_t: &Block,
+    (n, ns): (&Block, &Block),
+    (t, ts): (&Block, &Block),
+) {
     for k in 0..LANES {
         // The bed of a face stays where it is, also where the water would fall below it.
         let bed_w = (l[k] - ls[k]) - (h[k] - hs[k]);
@@ -265,7 +271,14 @@ fn sides(before: SideBlocks, after: SideBlocks, push: &mut Block, (h, l): (&Bloc
 impl Fluxes {
     /// Fluxes between the sides `before[k]` and `after[k + shift]` of the faces `k` of `range`, over `crests` if there are any.
     #[inline(always)]
-    pub fn solve(&mut self, before: &Sides, after: &Sides, shift: usize, range: (usize, usize), crests: Option<&Values>) {
+    pub fn solve(
+        &mut self,
+        before: &Sides,
+        after: &Sides,
+        shift: usize,
+        range: (usize, usize),
+        crests: Option<&Values>,
+    ) {
         let (a, b) = range;
         match crests {
             None => self.solve_over(before, after, shift, range, |_| f32::NEG_INFINITY),
@@ -373,9 +386,12 @@ impl Updated {
         let (given, signal) = (block_mut(&mut self.given, at), block_mut(&mut self.signal, at));
         let (x, north, south) = (around.x, around.north, around.south);
         let (mass_e, before_e, along_e) = (block(&x.mass, at), block(&x.before, at), block(&x.tangential, at));
-        let (mass_w, after_w, along_w) = (block(&x.mass, at - 1), block(&x.after, at - 1), block(&x.tangential, at - 1));
-        let (mass_n, after_n, along_n) = (block(&north.mass, at), block(&north.after, at), block(&north.tangential, at));
-        let (mass_s, before_s, along_s) = (block(&south.mass, at), block(&south.before, at), block(&south.tangential, at));
+        let (mass_w, after_w, along_w) =
+            (block(&x.mass, at - 1), block(&x.after, at - 1), block(&x.tangential, at - 1));
+        let (mass_n, after_n, along_n) =
+            (block(&north.mass, at), block(&north.after, at), block(&north.tangential, at));
+        let (mass_s, before_s, along_s) =
+            (block(&south.mass, at), block(&south.before, at), block(&south.tangential, at));
         let (push_x, push_z) = (block(&around.faces.push_x, at), block(&around.faces.push_z, at));
         let Numbers { dt, ratio, drag, rain } = numbers;
         for k in 0..LANES {

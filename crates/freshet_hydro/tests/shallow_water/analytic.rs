@@ -119,7 +119,8 @@ impl BumpFlow {
         }
     }
 
-    /// Where the momentum of the fast flow from the crest is that of the slow flow behind, m; beyond the channel without jump.
+    /// Where the momentum of the fast flow from the crest is that of the slow flow behind, m; beyond the channel
+    /// without jump.
     pub fn jump(&self) -> f64 {
         let Crossing::Jump(level) = self.crossing else { return f64::INFINITY };
         let force = |depth: f64| self.discharge * self.discharge / depth + 0.5 * G * depth * depth;

@@ -1,14 +1,38 @@
 //! What is to be done for a shallow water in a frame, as the render world gets it.
 use super::{GpuEdge, GpuShallow, Held};
 use bevy::{
+    asset::RenderAssetUsages,
+    image::ImageSampler,
     prelude::*,
-    render::{extract_component::ExtractComponent, sync_component::SyncComponent},
+    render::{
+        extract_component::ExtractComponent,
+        render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages},
+        sync_component::SyncComponent,
+    },
 };
+use freshet_hydro::shallow_water::Field;
 use std::sync::Arc;
 
 /// What is to be done in a frame.
 #[derive(Component, Clone, Debug)]
 pub(crate) struct ShallowFrame {
+    pub work: ShallowWork,
+    /// Level (m), depth (m) and velocity (m/s) of every cell; and the slope of the level.
+    pub pictures: [AssetId<Image>; 2],
+}
+
+/// Who simulates.
+#[derive(Clone, Debug)]
+pub(crate) enum ShallowWork {
+    /// The stages, which also draw the pictures.
+    Gpu(Box<GpuWork>),
+    /// The CPU, which has come to this.
+    Cpu(Arc<Field>),
+}
+
+/// Input of the stages.
+#[derive(Clone, Debug)]
+pub(crate) struct GpuWork {
     pub numbers: GpuShallow,
     /// Edges of the western, eastern, northern and southern side.
     pub edges: Vec<GpuEdge>,
@@ -60,4 +84,23 @@ impl ExtractComponent for ShallowFrame {
     fn extract_component(frame: &ShallowFrame) -> Option<ShallowFrame> {
         Some(frame.clone())
     }
+}
+
+/// The pictures of a simulation of so many cells.
+pub(super) fn pictures(size: UVec2) -> [Image; 2] {
+    let picture = |label, format| {
+        let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
+        let mut image = Image::new_uninit(extent, TextureDimension::D2, format, RenderAssetUsages::all());
+        image.texture_descriptor.label = Some(label);
+        image.texture_descriptor.usage = TextureUsages::STORAGE_BINDING
+            | TextureUsages::TEXTURE_BINDING
+            | TextureUsages::COPY_DST
+            | TextureUsages::COPY_SRC;
+        image.sampler = ImageSampler::linear();
+        image
+    };
+    [
+        picture("water_simulated", TextureFormat::Rgba32Float),
+        picture("water_simulated_slopes", TextureFormat::Rgba16Float),
+    ]
 }

@@ -4,10 +4,13 @@
 //! begin     the time that a frame adds is owed to the water       once a frame
 //! step      Δt from the fastest signal; every cell takes a step   ┐ for each step that the
 //! border    cells at the edges take it with what is outside       ┘ frame may take
+//! show      pictures for the surface's shader                     once a frame
 //! ```
 //!
 //! No number of them comes from the CPU during a frame: a step for which no time is left copies the state. What they come
 //! to returns some frames later ([`returned`]), and is all that the CPU knows of the water.
+mod domain;
+mod driver;
 mod frame;
 mod numbers;
 mod plan;
@@ -17,9 +20,12 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use frame::{Ground, ShallowFrame, StartState};
+pub(crate) use driver::Simulated;
+pub(crate) use frame::{GpuWork, Ground, ShallowFrame, ShallowWork, StartState};
 pub(crate) use numbers::{GpuEdge, GpuShallow};
 pub(crate) use returned::{Held, Returned};
+
+use crate::schedule::WaterSystems;
 
 use bevy::{
     asset::embedded_asset,
@@ -33,18 +39,31 @@ use bevy::{
     shader::load_shader_library,
 };
 
-/// Runs the stages of every [`ShallowFrame`]. Does nothing in an app without a GPU device.
+/// Simulates every water that has a [`WaterSimulation`](crate::body::WaterSimulation); on the CPU in an app without a GPU device.
 pub(crate) struct ShallowWaterPlugin;
 
 impl Plugin for ShallowWaterPlugin {
     fn build(&self, app: &mut App) {
-        if app.get_sub_app(RenderApp).is_none() {
-            return;
+        app.add_systems(FixedFirst, driver::simulate_on_cpu.before(WaterSystems::Resolve)).add_systems(
+            PostUpdate,
+            driver::simulate_on_gpu.after(TransformSystems::Propagate).before(WaterSystems::Resolve),
+        );
+        if app.get_sub_app(RenderApp).is_some() {
+            app.add_plugins(StagesPlugin);
         }
+    }
+}
+
+/// Runs the stages of every [`ShallowFrame`].
+pub(crate) struct StagesPlugin;
+
+impl Plugin for StagesPlugin {
+    fn build(&self, app: &mut App) {
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "scheme.wgsl");
         load_shader_library!(app, "cells.wgsl");
         embedded_asset!(app, "border.wgsl");
+        embedded_asset!(app, "show.wgsl");
         embedded_asset!(app, "step.wgsl");
         app.add_plugins(ExtractComponentPlugin::<ShallowFrame>::default());
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };

@@ -1,6 +1,6 @@
 //! Which stages run in a frame.
 use super::{
-    frame::ShallowFrame,
+    frame::{GpuWork, ShallowFrame, ShallowWork},
     returned,
     stages::{COLUMNS, GROUP, ROWS, Stages},
     state::ShallowState,
@@ -9,12 +9,16 @@ use bevy::{
     prelude::*,
     render::{
         diagnostic::RecordDiagnostics,
+        render_asset::RenderAssets,
         render_resource::{
-            BindGroup, BindGroupEntries, CachedComputePipelineId, ComputePass, ComputePassDescriptor, PipelineCache,
+            BindGroup, BindGroupEntries, CachedComputePipelineId, ComputePass, ComputePassDescriptor, Extent3d,
+            PipelineCache, TexelCopyBufferLayout,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue},
+        texture::GpuImage,
     },
 };
+use freshet_hydro::shallow_water::Field;
 
 /// What runs in this frame, for all waters.
 #[derive(Resource, Default)]
@@ -25,14 +29,16 @@ struct Plan {
     entity: Entity,
     /// Of even and odd steps.
     groups: [BindGroup; 2],
+    pictures: BindGroup,
     /// Whether there are point sources, and walls.
     variant: [bool; 2],
     steps: u32,
     edges: u32,
     cells: UVec2,
+    texels: UVec2,
 }
 
-/// Plans the steps of every water.
+/// Plans the steps of every water, and draws the pictures of those that the CPU simulates.
 pub(super) fn plan_steps(
     mut commands: Commands,
     mut plans: ResMut<Plans>,
@@ -40,6 +46,7 @@ pub(super) fn plan_steps(
     cache: Res<PipelineCache>,
     device: Res<RenderDevice>,
     queue: Res<RenderQueue>,
+    images: Res<RenderAssets<GpuImage>>,
     mut waters: Query<(Entity, &ShallowFrame, Option<&mut ShallowState>)>,
     orphans: Query<Entity, (With<ShallowState>, Without<ShallowFrame>)>,
 ) {
@@ -47,67 +54,103 @@ pub(super) fn plan_steps(
     for entity in &orphans {
         commands.entity(entity).remove::<ShallowState>();
     }
-    if !stages.are_ready(&cache) {
-        return;
-    }
+    let is_ready = stages.are_ready(&cache);
     for (entity, frame, state) in &mut waters {
-        let newer = |state: &ShallowState| frame.start.as_ref().is_some_and(|start| start.version != state.start);
+        let [Some(level), Some(slopes)] = frame.pictures.map(|picture| images.get(picture)) else { continue };
+        let work = match &frame.work {
+            ShallowWork::Gpu(work) if is_ready => work,
+            ShallowWork::Gpu(_) => continue,
+            ShallowWork::Cpu(field) => {
+                if state.is_some() {
+                    commands.entity(entity).remove::<ShallowState>();
+                }
+                draw(field, [level, slopes], &queue);
+                continue;
+            }
+        };
+        let newer = |state: &ShallowState| work.start.as_ref().is_some_and(|start| start.version != state.start);
         let mut fresh = None;
-        let state = match (state, &frame.start, &frame.ground) {
+        let state = match (state, &work.start, &work.ground) {
             (Some(state), ..) if !newer(&state) => state.into_inner(),
-            (_, Some(start), Some(ground)) => fresh.insert(ShallowState::new(&device, frame, start, ground)),
+            (_, Some(start), Some(ground)) => fresh.insert(ShallowState::new(&device, work, start, ground)),
             _ => continue,
         };
-        if let Some(ground) = frame.ground.as_ref().filter(|ground| ground.version != state.ground) {
+        if let Some(ground) = work.ground.as_ref().filter(|ground| ground.version != state.ground) {
             state.set_ground(&device, ground);
         }
-        state.upload(frame, &device, &queue);
-        if let Some(plan) = plan(entity, frame, state, &stages, &cache, &device) {
-            plans.0.push(plan);
-        }
+        state.upload(work, &device, &queue);
+        let surroundings = Surroundings { stages: &stages, cache: &cache, device: &device };
+        plans.0.extend(surroundings.plan(entity, work, state, [level, slopes]));
         if let Some(state) = fresh {
             commands.entity(entity).insert(state);
         }
     }
 }
 
-fn plan(
-    entity: Entity,
-    frame: &ShallowFrame,
-    state: &ShallowState,
-    stages: &Stages,
-    cache: &PipelineCache,
-    device: &RenderDevice,
-) -> Option<Plan> {
-    let layout = cache.get_bind_group_layout(&stages.layout);
-    let numbers = state.numbers.binding()?;
-    let edges = state.edges.binding()?;
-    let group = |parity: usize| {
-        let [from, to] = [&state.states[parity], &state.states[1 - parity]].map(|buffer| buffer.as_entire_binding());
-        let parity = state.parities[parity].binding()?;
-        let entries = BindGroupEntries::sequential((
-            numbers.clone(),
-            parity,
-            state.clock.as_entire_binding(),
-            from,
-            to,
-            state.bed.as_entire_binding(),
-            edges.clone(),
-            state.leaving.as_entire_binding(),
-            state.extras.as_entire_binding(),
-            state.given.as_entire_binding(),
-        ));
-        Some(device.create_bind_group("water_shallow", &layout, &entries))
+/// Writes what the CPU has come to into the pictures.
+fn draw(field: &Field, [level, slopes]: [&GpuImage; 2], queue: &RenderQueue) {
+    let size = field.size();
+    let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
+    let write = |image: &GpuImage, bytes: &[u8], texel: u32| {
+        let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.x * texel), rows_per_image: None };
+        queue.write_texture(image.texture.as_image_copy(), bytes, layout, extent);
     };
-    let size = frame.numbers.size.as_uvec2();
-    Some(Plan {
-        entity,
-        groups: [group(0)?, group(1)?],
-        variant: [frame.has_sources, frame.has_walls],
-        steps: frame.steps.next_multiple_of(2),
-        edges: (2 * (size.x + size.y)).div_ceil(64),
-        cells: uvec2(size.x.div_ceil(GROUP * COLUMNS), size.y.div_ceil(ROWS)),
-    })
+    let cells: Vec<u8> = field.cells().iter().flat_map(|cell| cell.to_array()).flat_map(f32::to_le_bytes).collect();
+    write(level, &cells, 16);
+    let half =
+        |slope: &Vec2| [slope.x, slope.y, 0.0, 0.0].map(half::f16::from_f32).map(half::f16::to_le_bytes).concat();
+    let steep: Vec<u8> = field.slopes().iter().flat_map(half).collect();
+    write(slopes, &steep, 8);
+}
+
+/// What planning needs to know.
+struct Surroundings<'a> {
+    stages: &'a Stages,
+    cache: &'a PipelineCache,
+    device: &'a RenderDevice,
+}
+
+impl Surroundings<'_> {
+    fn plan(&self, entity: Entity, work: &GpuWork, state: &ShallowState, pictures: [&GpuImage; 2]) -> Option<Plan> {
+        let layout = self.cache.get_bind_group_layout(&self.stages.layout);
+        let numbers = state.numbers.binding()?;
+        let edges = state.edges.binding()?;
+        let group = |parity: usize| {
+            let [from, to] =
+                [&state.states[parity], &state.states[1 - parity]].map(|buffer| buffer.as_entire_binding());
+            let parity = state.parities[parity].binding()?;
+            let entries = BindGroupEntries::sequential((
+                numbers.clone(),
+                parity,
+                state.clock.as_entire_binding(),
+                from,
+                to,
+                state.bed.as_entire_binding(),
+                edges.clone(),
+                state.leaving.as_entire_binding(),
+                state.extras.as_entire_binding(),
+                state.given.as_entire_binding(),
+            ));
+            Some(self.device.create_bind_group("water_shallow", &layout, &entries))
+        };
+        let views = pictures.map(|picture| &picture.texture_view);
+        let pictures = self.device.create_bind_group(
+            "water_shallow_pictures",
+            &self.cache.get_bind_group_layout(&self.stages.pictures),
+            &BindGroupEntries::sequential((views[0], views[1])),
+        );
+        let size = work.numbers.size.as_uvec2();
+        Some(Plan {
+            entity,
+            groups: [group(0)?, group(1)?],
+            pictures,
+            variant: [work.has_sources, work.has_walls],
+            steps: work.steps.next_multiple_of(2),
+            edges: (2 * (size.x + size.y)).div_ceil(64),
+            cells: uvec2(size.x.div_ceil(GROUP * COLUMNS), size.y.div_ceil(ROWS)),
+            texels: uvec2(size.x.div_ceil(8), size.y.div_ceil(8)),
+        })
+    }
 }
 
 /// Runs what is planned, and copies what it comes to.
@@ -145,6 +188,7 @@ fn run(plan: &Plan, stages: &Stages, cache: &PipelineCache, pass: &mut ComputePa
         let Some(pipeline) = cache.get_compute_pipeline(stage) else { return };
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, group, &[]);
+        pass.set_bind_group(1, &plan.pictures, &[]);
         pass.dispatch_workgroups(workgroups.x, workgroups.y, 1);
     };
     dispatch(stages.begin, &plan.groups[0], UVec2::ONE);
@@ -155,4 +199,5 @@ fn run(plan: &Plan, stages: &Stages, cache: &PipelineCache, pass: &mut ComputePa
         dispatch(stage.step, group, plan.cells);
         dispatch(stage.border, group, uvec2(plan.edges, 1));
     }
+    dispatch(stages.show, &plan.groups[0], plan.texels);
 }

@@ -9,15 +9,13 @@ use super::{
 use bevy::{
     prelude::*,
     render::{
-        render_resource::{
-            Buffer, BufferDescriptor, BufferUsages, CommandEncoder, MapMode, ShaderType, encase,
-        },
+        render_resource::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, MapMode, ShaderType, encase},
         renderer::RenderDevice,
     },
 };
 use std::sync::{
     Arc, Mutex,
-    atomic::{AtomicU64, Ordering},
+    atomic::{AtomicBool, AtomicU64, Ordering},
 };
 
 /// Copies that may be on their way at a time.
@@ -30,6 +28,8 @@ pub(crate) struct Held {
     pub start: AtomicU64,
     /// Version of the ground.
     pub ground: AtomicU64,
+    /// Whether a device was lost that held a state, until somebody asks.
+    lost: AtomicBool,
     returned: Mutex<Option<Returned>>,
 }
 
@@ -60,6 +60,18 @@ impl Held {
     /// The newest state, once.
     pub fn take(&self) -> Option<Returned> {
         self.returned.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take()
+    }
+
+    /// Whether a device was lost with the state that it held; said once.
+    pub fn was_lost(&self) -> bool {
+        self.lost.swap(false, Ordering::Relaxed)
+    }
+
+    /// The device is lost, and with it what it held.
+    pub(super) fn lose(&self) {
+        let held = self.start.swap(0, Ordering::Relaxed);
+        self.ground.store(0, Ordering::Relaxed);
+        self.lost.store(held != 0, Ordering::Relaxed);
     }
 
     fn put(&self, returned: Returned) {
@@ -124,8 +136,9 @@ pub(super) fn copy(state: &mut ShallowState, device: &RenderDevice, encoder: &mu
 pub(super) fn map_copies(mut states: Query<(&mut ShallowState, &super::ShallowFrame)>) {
     for (mut state, frame) in &mut states {
         let Some(buffer) = state.copies.filled.take() else { continue };
-        let (parts, start, has_sources) = (Parts::of(&state), state.start, frame.has_sources);
-        let (free, held) = (state.copies.free.clone(), frame.held.clone());
+        let super::ShallowWork::Gpu(work) = &frame.work else { continue };
+        let (parts, start, has_sources) = (Parts::of(&state), state.start, work.has_sources);
+        let (free, held) = (state.copies.free.clone(), work.held.clone());
         let mapped = buffer.clone();
         buffer.slice(..).map_async(MapMode::Read, move |result| {
             // After an error the buffer belongs to a lost device.

@@ -5,8 +5,8 @@ use bevy::{
     prelude::*,
     render::render_resource::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedComputePipelineId, ComputePipelineDescriptor,
-        PipelineCache, ShaderStages, ShaderType,
-        binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer},
+        PipelineCache, ShaderStages, ShaderType, StorageTextureAccess, TextureFormat,
+        binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, texture_storage_2d, uniform_buffer},
     },
     shader::{Shader, ShaderDefVal},
 };
@@ -25,6 +25,9 @@ pub(super) struct Stages {
     pub begin: CachedComputePipelineId,
     /// Without and with point sources, each without and with walls.
     pub steps: [[Step; 2]; 2],
+    /// Binds the pictures as well.
+    pub show: CachedComputePipelineId,
+    pub pictures: BindGroupLayoutDescriptor,
 }
 
 /// The two stages of a step.
@@ -37,7 +40,7 @@ impl Stages {
     /// Whether every pipeline has been made.
     pub fn are_ready(&self, cache: &PipelineCache) -> bool {
         let steps = self.steps.iter().flatten().flat_map(|step| [step.step, step.border]);
-        steps.chain([self.begin]).all(|stage| cache.get_compute_pipeline(stage).is_some())
+        steps.chain([self.begin, self.show]).all(|stage| cache.get_compute_pipeline(stage).is_some())
     }
 }
 
@@ -62,11 +65,30 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
         step: stage("water_shallow_step", &step, "main", defines),
         border: stage("water_shallow_border", &border, "main", defines),
     };
+    let pictures = pictures_layout();
+    let show = cache.queue_compute_pipeline(ComputePipelineDescriptor {
+        label: Some("water_shallow_show".into()),
+        layout: vec![layout.clone(), pictures.clone()],
+        shader: load_embedded_asset!(&*assets, "show.wgsl"),
+        entry_point: Some("main".into()),
+        ..default()
+    });
     commands.insert_resource(Stages {
         begin: stage("water_shallow_begin", &step, "begin", &[]),
         steps: [[pair(&[]), pair(&["WALLS"])], [pair(&["SOURCES"]), pair(&["SOURCES", "WALLS"])]],
+        show,
+        pictures,
         layout,
     });
+}
+
+fn pictures_layout() -> BindGroupLayoutDescriptor {
+    let picture = |format| texture_storage_2d(format, StorageTextureAccess::WriteOnly);
+    let entries = BindGroupLayoutEntries::sequential(
+        ShaderStages::COMPUTE,
+        (picture(TextureFormat::Rgba32Float), picture(TextureFormat::Rgba16Float)),
+    );
+    BindGroupLayoutDescriptor::new("water_shallow_pictures", &entries)
 }
 
 fn layout() -> BindGroupLayoutDescriptor {

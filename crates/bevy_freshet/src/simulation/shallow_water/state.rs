@@ -1,6 +1,6 @@
 //! The state of a shallow water on the GPU.
 use super::{
-    ShallowFrame,
+    GpuWork, ShallowFrame, ShallowWork,
     frame::{Ground, StartState},
     numbers::{GpuClock, GpuEdge, GpuLeaving, GpuShallow},
     returned::Copies,
@@ -40,13 +40,13 @@ const STORAGE: BufferUsages = BufferUsages::STORAGE.union(BufferUsages::COPY_SRC
 
 impl ShallowState {
     /// Buffers with this state over this ground.
-    pub fn new(device: &RenderDevice, frame: &ShallowFrame, start: &StartState, ground: &Ground) -> Self {
+    pub fn new(device: &RenderDevice, work: &GpuWork, start: &StartState, ground: &Ground) -> Self {
         let buffer = |label, contents: &[u8]| {
             device.create_buffer_with_data(&BufferInitDescriptor { label: Some(label), contents, usage: STORAGE })
         };
         let clock = GpuClock { fastest: UVec2::splat(start.fastest.to_bits()), ..default() };
         let cells = bytes_of_list(&start.cells);
-        let given = if !frame.has_sources { 1 } else { start.cells.len() };
+        let given = if !work.has_sources { 1 } else { start.cells.len() };
         let parity = |parity| {
             let mut uniform = UniformBuffer::from(UVec4::new(parity, 0, 0, 0));
             uniform.set_label(Some("water_shallow_parity"));
@@ -61,7 +61,7 @@ impl ShallowState {
             clock: buffer("water_shallow_clock", &bytes_of(&clock)),
             states: [buffer("water_shallow_a", &cells), buffer("water_shallow_b", &cells)],
             bed: buffer("water_shallow_bed", &[0; 4]),
-            leaving: buffer("water_shallow_leaving", &bytes_of_list(&vec![GpuLeaving::default(); frame.edges.len()])),
+            leaving: buffer("water_shallow_leaving", &bytes_of_list(&vec![GpuLeaving::default(); work.edges.len()])),
             extras: buffer("water_shallow_extras", &[0; 16]),
             given: buffer("water_shallow_given", &vec![0; given * 8]),
             copies: Copies::default(),
@@ -87,14 +87,14 @@ impl ShallowState {
     }
 
     /// Hands the numbers of a frame to the GPU, and says what it holds.
-    pub fn upload(&mut self, frame: &ShallowFrame, device: &RenderDevice, queue: &RenderQueue) {
-        self.numbers.set(frame.numbers.clone());
+    pub fn upload(&mut self, work: &GpuWork, device: &RenderDevice, queue: &RenderQueue) {
+        self.numbers.set(work.numbers.clone());
         self.numbers.write_buffer(device, queue);
-        self.edges.set(frame.edges.clone());
+        self.edges.set(work.edges.clone());
         self.edges.write_buffer(device, queue);
         self.parities.iter_mut().for_each(|parity| parity.write_buffer(device, queue));
-        frame.held.start.store(self.start, Ordering::Relaxed);
-        frame.held.ground.store(self.ground, Ordering::Relaxed);
+        work.held.start.store(self.start, Ordering::Relaxed);
+        work.held.ground.store(self.ground, Ordering::Relaxed);
     }
 }
 
@@ -111,12 +111,14 @@ fn bytes_of_list<T: ShaderType + encase::ShaderSize + encase::internal::WriteInt
 }
 
 /// Buffers of a lost device are of no use.
-pub(super) fn forget_states(mut commands: Commands, states: Query<(Entity, Option<&ShallowFrame>), With<ShallowState>>) {
+pub(super) fn forget_states(
+    mut commands: Commands,
+    states: Query<(Entity, Option<&ShallowFrame>), With<ShallowState>>,
+) {
     for (entity, frame) in &states {
         commands.entity(entity).remove::<ShallowState>();
-        if let Some(frame) = frame {
-            frame.held.start.store(0, Ordering::Relaxed);
-            frame.held.ground.store(0, Ordering::Relaxed);
+        if let Some(ShallowFrame { work: ShallowWork::Gpu(work), .. }) = frame {
+            work.held.lose();
         }
     }
 }

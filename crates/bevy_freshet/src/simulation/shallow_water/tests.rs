@@ -6,7 +6,10 @@ mod stage;
 use super::*;
 use bevy::{
     prelude::*,
-    render::{RenderApp, render_resource::{CachedPipelineState, PipelineCache}},
+    render::{
+        RenderApp,
+        render_resource::{CachedPipelineState, PipelineCache},
+    },
 };
 use freshet_hydro::{grid::Grid, shallow_water::ShallowWater};
 use stage::Stage;
@@ -17,13 +20,22 @@ struct Gpu {
     stage: Stage,
     entity: Entity,
     version: u64,
+    pictures: Option<(UVec2, [Handle<Image>; 2])>,
 }
 
 impl Gpu {
     fn new() -> Self {
-        let mut stage = Stage::with(|app| _ = app.add_plugins(ShallowWaterPlugin));
+        let mut stage = Stage::with(|app| _ = app.add_plugins(StagesPlugin));
         let entity = stage.spawn(());
-        Self { stage, entity, version: 0 }
+        Self { stage, entity, version: 0, pictures: None }
+    }
+
+    fn pictures(&mut self, size: UVec2) -> [AssetId<Image>; 2] {
+        if self.pictures.as_ref().is_none_or(|(of, _)| *of != size) {
+            let mut images = self.stage.app.world_mut().resource_mut::<Assets<Image>>();
+            self.pictures = Some((size, frame::pictures(size).map(|image| images.add(image))));
+        }
+        self.pictures.as_ref().expect("just made").1.each_ref().map(Handle::id)
     }
 
     /// Fails if a pipeline cannot be made.
@@ -43,7 +55,9 @@ impl Gpu {
         let (mut added, mut steps, mut frames) = (duration, 0, 0);
         loop {
             let holds = held.start.load(std::sync::atomic::Ordering::Relaxed) == self.version;
-            let frame = frame(water, self.version, if holds { std::mem::take(&mut added) } else { 0.0 }, most, &held);
+            let work = work(water, self.version, if holds { std::mem::take(&mut added) } else { 0.0 }, most, &held);
+            let pictures = self.pictures(water.size());
+            let frame = ShallowFrame { work: ShallowWork::Gpu(Box::new(work)), pictures };
             self.stage.app.world_mut().entity_mut(self.entity).insert(frame);
             self.stage.app.update();
             frames += 1;
@@ -68,7 +82,7 @@ impl Gpu {
     }
 }
 
-fn frame(water: &mut ShallowWater, version: u64, added: f64, steps: u32, held: &Arc<Held>) -> ShallowFrame {
+fn work(water: &mut ShallowWater, version: u64, added: f64, steps: u32, held: &Arc<Held>) -> GpuWork {
     let size = water.size();
     let forcing = water.forcing();
     let (rain, entering, longest) = (forcing.rain, forcing.entering, forcing.longest_step);
@@ -89,7 +103,7 @@ fn frame(water: &mut ShallowWater, version: u64, added: f64, steps: u32, held: &
     let crests: Vec<[f32; 2]> = water.crests().map_or_else(none, Iterator::collect);
     let source = |i: usize| sources.get(i).copied().unwrap_or_default();
     let extras = crests.iter().enumerate().map(|(i, crest)| vec4(crest[0], crest[1], source(i), 0.0)).collect();
-    ShallowFrame {
+    GpuWork {
         numbers,
         edges: water.edge_cells().map(|(kind, value)| GpuEdge { kind, value }).collect(),
         start: Some(Arc::new(StartState {

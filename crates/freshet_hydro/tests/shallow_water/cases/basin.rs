@@ -34,7 +34,12 @@ pub fn planar(run: Run) {
         }
         let centroid = moment.map(|moment| moment / volume);
         let drift = water.volume() / before - 1.0;
-        println!("{turn} | ({:.4}, {:.4}) | {:.4} | {shore:.2} | {drift:.1e}", centroid[0], centroid[1], error / volume);
+        println!(
+            "{turn} | ({:.4}, {:.4}) | {:.4} | {shore:.2} | {drift:.1e}",
+            centroid[0],
+            centroid[1],
+            error / volume
+        );
         let amplitude = centroid[0].hypot(centroid[1]) / bowl.swing;
         assert!((amplitude - 1.0).abs() < 0.03, "{amplitude}");
         assert!(shore < 2.0, "{shore}");

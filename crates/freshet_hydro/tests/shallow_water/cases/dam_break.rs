@@ -2,8 +2,8 @@
 use super::{Run, land, place, still};
 use crate::analytic::{dam_break, shock_speed};
 
-/// A channel of 1 m in 400 cells, the dam in the middle, 1 m of water left of it, t = 0.06 s: the mean error of depth stays
-/// below that of ANUGA's scheme DE1 with four triangles per cell (0.085 %).
+/// A channel of 1 m in 400 cells, the dam in the middle, 1 m of water left of it, t = 0.06 s: the mean error of depth
+/// stays below that of ANUGA's scheme DE1 with four triangles per cell (0.085 %).
 pub fn ritter_and_stoker(run: Run) {
     println!("dam break, 400 cells, along | depth right (m) | mean |Δh| / h_l (%) | shock off by (cells)");
     for along_z in [false, true] {

@@ -6,34 +6,29 @@ use freshet_hydro::{
 };
 use glam::Vec2;
 
-/// Dry and flat, or full of still water 1 m deep, where levels are depths.
+/// Level of still water over a flat bed at 0, where a level is a depth, m.
 const LEVEL: f32 = 1.0;
 
-/// A long wave that runs to an edge comes back as less than 5 % of itself from an open one (a crest) and from one with still
-/// water behind it (crest and trough), as all of itself from a wall or where a discharge is given, and upside down from an
-/// edge with a given level.
+/// A long wave that runs to an edge does not come back from an open one (a crest) and from one with still water behind
+/// it (crest and trough); it comes back as all of itself from a wall or where a discharge is given, and upside down
+/// from an edge with a given level.
 pub fn reflect(run: Run) {
     println!("edge in the east | incoming (m) | comes back as (%)");
     for (edge, amplitude, expected, within) in [
-        (Edge::Open, 0.02, 0.0, 0.05),
-        (Edge::Open, 0.2, 0.0, 0.05),
-        (Edge::Open, -0.02, 0.0, 2.0),
-        (Edge::Still(LEVEL.into()), 0.02, 0.0, 0.05),
-        (Edge::Still(LEVEL.into()), 0.2, 0.0, 0.05),
-        (Edge::Still(LEVEL.into()), -0.02, 0.0, 0.05),
-        (Edge::Still(LEVEL.into()), -0.2, 0.0, 0.05),
-        (Edge::Wall, 0.02, 1.0, 0.05),
-        (Edge::Wall, -0.02, 1.0, 0.05),
-        (Edge::Wall, -0.2, 1.0, 0.25),
-        (Edge::Wall, 0.2, 1.0, 0.25),
-        (Edge::Discharge(0.0.into()), 0.02, 1.0, 0.15),
-        (Edge::Discharge(0.0.into()), -0.02, 1.0, 0.15),
-        (Edge::Discharge(0.0.into()), 0.2, 1.0, 0.25),
-        (Edge::Discharge((1e-6).into()), 0.2, 1.0, 0.25),
-        (Edge::Discharge((1e-6).into()), 0.02, 1.0, 0.25),
-        (Edge::Discharge((1e-6).into()), -0.02, 1.0, 0.25),
-        (Edge::Level(LEVEL.into()), 0.02, -1.0, 0.05),
-        (Edge::Level(LEVEL.into()), -0.02, -1.0, 0.05),
+        (Edge::Open, 0.02, 0.0, 0.01),
+        (Edge::Open, 0.2, 0.0, 0.02),
+        // None may enter, so a trough meets a wall.
+        (Edge::Open, -0.02, 1.0, 0.01),
+        (Edge::Still(LEVEL.into()), 0.02, 0.0, 0.01),
+        (Edge::Still(LEVEL.into()), -0.02, 0.0, 0.01),
+        (Edge::Still(LEVEL.into()), 0.2, 0.0, 0.01),
+        (Edge::Still(LEVEL.into()), -0.2, 0.0, 0.01),
+        (Edge::Wall, 0.02, 1.0, 0.01),
+        (Edge::Wall, -0.02, 1.0, 0.01),
+        (Edge::Discharge(0.0.into()), 0.02, 1.0, 0.01),
+        (Edge::Discharge(0.0.into()), -0.02, 1.0, 0.01),
+        (Edge::Level(LEVEL.into()), 0.02, -1.0, 0.03),
+        (Edge::Level(LEVEL.into()), -0.02, -1.0, 0.03),
     ] {
         let back = reflected(run, edge.clone(), amplitude);
         println!("{edge:?} | {amplitude} | {:.2}", 100.0 * back);
@@ -41,8 +36,8 @@ pub fn reflect(run: Run) {
     }
 }
 
-/// The farthest from rest that the water is after a wave of this `amplitude` (m) has met the edge in the east, as a share of
-/// what it was on its way there.
+/// The farthest from rest that the water is after a wave of this `amplitude` (m) has met the edge in the east, as a
+/// share of what it was on its way there.
 fn reflected(run: Run, edge: Edge, amplitude: f64) -> f64 {
     let mut water = land(400, 3, 1.0, |_, _| 0.0);
     water.set_edge(DomainSide::East, EdgePart::All, edge).expect("a sane edge");
@@ -66,8 +61,8 @@ fn farthest_from_rest(water: &ShallowWater) -> f64 {
     rises.max_by(|a, b| a.abs().total_cmp(&b.abs())).expect("at least one cell")
 }
 
-/// A ring that leaves a square at all angles through edges with still water behind them leaves less than a tenth of its height
-/// behind.
+/// A ring that leaves a square at all angles through edges with still water behind them leaves less than 8 % of its
+/// height behind.
 pub fn a_ring_leaves(run: Run) {
     println!("ring, first as | at the edge (m) | left behind (m) | share (%)");
     for amplitude in [0.1, -0.1] {
@@ -83,7 +78,7 @@ pub fn a_ring_leaves(run: Run) {
         run(&mut water, 115.0 / celerity);
         let left = farthest_from_rest(&water).abs();
         println!("{amplitude} | {there:.5} | {left:.5} | {:.1}", 100.0 * left / there);
-        assert!(left <= 0.1 * there, "{left} {there}");
+        assert!(left <= 0.08 * there, "{left} {there}");
     }
 }
 
@@ -107,7 +102,7 @@ pub fn a_tide_is_followed(run: Run) {
         }
     }
     println!("off by at most {worst:.4} m beside the edge, {far:.4} m at the far end");
-    assert!(worst <= 0.005 && far <= 0.08, "{worst} {far}");
+    assert!(worst <= 0.0015 && far <= 0.06, "{worst} {far}");
 }
 
 /// A discharge onto dry land enters to the last litre, and through the lowest bed.
@@ -126,8 +121,8 @@ pub fn a_discharge_enters_dry_land(run: Run) {
     assert!(column(20) > 0.1 && column(0) == 0.0 && column(40) == 0.0, "only the bottom of the valley carries it");
 }
 
-/// A discharge that is taken, and a drain: they get what there is and no more; no depth falls below zero, and the book is
-/// right.
+/// A discharge that is taken, and a drain: they get what there is and no more; no depth falls below zero, and the book
+/// is right.
 pub fn no_more_is_taken_than_there_is(run: Run) {
     println!("taken by | asked for (m³) | there was | taken | left");
     for drain in [false, true] {

@@ -6,6 +6,7 @@ pub mod edges;
 pub mod order;
 pub mod rest;
 pub mod steady;
+pub mod symmetry;
 pub mod terrain;
 pub mod volume;
 pub mod walls;
@@ -23,7 +24,8 @@ pub fn land(columns: u32, rows: u32, cell_size: f32, bed: impl Fn(f64, f64) -> f
 
 /// The bed of [`land`].
 pub fn bed_grid(columns: u32, rows: u32, cell_size: f32, bed: impl Fn(f64, f64) -> f64) -> Grid<f32> {
-    let empty = Grid::new(UVec2::new(columns, rows), cell_size, vec![(); (columns * rows) as usize]).expect("a valid shape");
+    let empty =
+        Grid::new(UVec2::new(columns, rows), cell_size, vec![(); (columns * rows) as usize]).expect("a valid shape");
     let value = |cell| {
         let at = centre(&empty, cell);
         bed(at[0], at[1]) as f32

@@ -8,8 +8,8 @@ const EXTENT: f64 = 100.0;
 /// Time of the comparison, s: a wave crosses half of the square, and is far from breaking.
 const DURATION: f64 = 5.0;
 
-/// A smooth wave of 0.2 m in 10 m of water over a smooth bed, both repeating along x and z: from grid to grid the mean error
-/// of depth against that of 512² cells falls at least as the cells' side to the power of 1.8.
+/// A smooth wave of 0.2 m in 10 m of water over a smooth bed, both repeating along x and z: from grid to grid the mean
+/// error of depth against that of 512² cells falls at least as the cells' side to the power of 1.8.
 pub fn of_a_smooth_wave(run: Run) {
     let reference = after(run, 512);
     println!("cells | mean |Δh| (m) | order");

@@ -1,5 +1,5 @@
 //! Thin walls between cells, weirs and gates, and a bed that is changed under the water.
-use super::{Run, ShallowWater, bed_grid, fastest, land, place, still};
+use super::{Run, ShallowWater, bed_grid, fastest, land, still};
 use freshet_hydro::{
     shallow_water::{CLOSED, DomainSide, Edge, EdgePart},
     waves::GRAVITY,
@@ -9,7 +9,8 @@ use glam::{UVec2, Vec2};
 /// Columns and rows of the pond.
 const COUNT: u32 = 40;
 
-/// A flat pond of 40 × 40 cells of 1 m with a staircase of thin walls from the north to the south; cells left of it are wet.
+/// A flat pond of 40 × 40 cells of 1 m with a staircase of thin walls from the north to the south; cells left of it are
+/// wet.
 fn divided(crest: f32) -> ShallowWater {
     let mut water = land(COUNT, COUNT, 1.0, |x, z| 0.01 * x + 0.2 * (0.3 * z).sin());
     set_walls(&mut water, crest);
@@ -29,21 +30,19 @@ fn set_walls(water: &mut ShallowWater, crest: f32) {
     for row in 0..COUNT {
         let right = step_of(row);
         // A face is that of the cell on either of its sides.
-        let (cell, side) =
-            if row % 2 == 0 { (right, DomainSide::West) } else { (right - 1, DomainSide::East) };
+        let (cell, side) = if row % 2 == 0 { (right, DomainSide::West) } else { (right - 1, DomainSide::East) };
         water.set_wall(UVec2::new(cell, row), side, crest).expect("a cell of the pond");
         if row > 0 && step_of(row - 1) < right {
-            let (cell, side) =
-                if row % 8 == 0 { (row, DomainSide::North) } else { (row - 1, DomainSide::South) };
+            let (cell, side) = if row % 8 == 0 { (row, DomainSide::North) } else { (row - 1, DomainSide::South) };
             water.set_wall(UVec2::new(right - 1, cell), side, crest).expect("a cell of the pond");
         }
     }
 }
 
-/// Behind a thin closed wall it stays dry to the last bit, 3 m beside still water and beside a wave that breaks on the wall,
-/// and still water before the wall stays still.
+/// Behind a thin closed wall it stays dry to the last bit, 3 m beside still water and beside a wave that breaks on the
+/// wall, and still water before the wall stays still.
 pub fn a_closed_wall_leaks_nothing(run: Run) {
-    println!("closed wall, water left of it | steps | wet cells right of it | max |u| (m/s) | volume drift");
+    println!("closed wall, water left of it | wet cells right of it | max |u| (m/s) | volume drift");
     for wave in [0.0, 2.0_f32] {
         let mut water = divided(CLOSED);
         let pond = |at: Vec2, bed: f32| {
@@ -58,9 +57,9 @@ pub fn a_closed_wall_leaks_nothing(run: Run) {
         let wet = (0..water.depths().len()).filter(|&index| !is_left(index) && water.depths()[index] != 0.0).count();
         let drift = water.volume() / before - 1.0;
         let speed = fastest(&water);
-        println!("3 m, wave {wave} m | 5000 | {wet} | {speed:.1e} | {drift:.1e}");
+        println!("3 m, wave {wave} m | {wet} | {speed:.1e} | {drift:.1e}");
         assert_eq!(wet, 0);
-        assert!(drift.abs() <= 1e-9, "{drift}");
+        assert!(drift.abs() <= 1e-7, "{drift}");
         assert!(wave > 0.0 || speed <= 10.0 * f32::EPSILON * (GRAVITY * 3.0).sqrt(), "{speed}");
     }
 }
@@ -90,23 +89,42 @@ pub fn a_weir_holds_what_is_below_its_crest(run: Run) {
     }
 }
 
-pub fn weir_law(run: Run) {
-    for (bed_sill, level) in [(false, 1.2f32), (false, 1.5), (true, 1.2), (true, 1.5)] {
-        let mut water = land(80, 2, 1.0, |x, _| if bed_sill && (-1.0..0.0).contains(&x) { 1.0 } else { 0.0 });
-        if !bed_sill { for row in 0..2 { water.set_wall(UVec2::new(40, row), DomainSide::West, 1.0).unwrap(); } }
-        water.set_water(|at, b| still(if at.x < -0.5 { f64::from(level - b) } else { 0.0 })).unwrap();
-        water.set_edge(DomainSide::West, EdgePart::All, Edge::Level(level.into())).unwrap();
-        water.set_edge(DomainSide::East, EdgePart::All, Edge::Open).unwrap();
-        for _ in 0..4 {
-        run(&mut water, 100.0);
-        let q = water.balance().left[1];
-        run(&mut water, 50.0);
-        let q = (water.balance().left[1] - q) / 50.0 / 2.0;
-        let head = water.depths()[30] - 1.0;
-        let uu = water.velocity(30).x;
-        println!("weir law: sill {bed_sill} level {level} head {head:.4} u {uu:.3} q {q:.4} / sqrt(g H^3) = {:.4} (broad-crested 0.5443)", q / f64::from(GRAVITY * head.powi(3)).sqrt());
+/// Over a thin weir runs about what critical flow carries, q = (2/3)^(3/2) √g H^(3/2) for the head H above the crest;
+/// the hydrostatic scheme loses some.
+pub fn flow_over_a_weir(run: Run) {
+    println!("weir, head (m) | q (m²/s) | q / √(g H³), which is 0.544 for critical flow");
+    let found = [0.1, 0.2, 0.5, 1.0].map(|head| flow_over_obstacle(run, head, false));
+    assert!(found.iter().all(|found| (0.35..0.65).contains(found)), "{found:?}");
+}
+
+/// The same over a dike that is one cell wide, with a lower bed behind it.
+pub fn flow_over_a_dike(run: Run) {
+    println!("dike of one cell, head (m) | q (m²/s) | q / √(g H³), which is 0.544 for critical flow");
+    let found = [0.1, 0.2, 0.5, 1.0].map(|head| flow_over_obstacle(run, head, true));
+    assert!(found.iter().all(|found| (0.35..0.65).contains(found)), "{found:?}");
+}
+
+/// q / √(g H³) of steady flow from water that is kept `head` (m) above an obstacle 1 m high, which is a dike or a thin
+/// wall.
+fn flow_over_obstacle(run: Run, head: f64, dike: bool) -> f64 {
+    let mut water = land(80, 2, 1.0, |x, _| if dike && (0.0..1.0).contains(&x) { 1.0 } else { 0.0 });
+    if !dike {
+        for row in 0..2 {
+            water.set_wall(UVec2::new(40, row), DomainSide::West, 1.0).expect("a cell of the channel");
         }
     }
+    let level = 1.0 + head;
+    water.set_water(|at, _| still(if at.x < 0.0 { level } else { 0.0 })).expect("a sane depth");
+    let reservoir = Edge::Level((level as f32).into());
+    water.set_edge(DomainSide::West, EdgePart::All, reservoir).expect("a sane level");
+    water.set_edge(DomainSide::East, EdgePart::All, Edge::Open).expect("a sane edge");
+    run(&mut water, 300.0);
+    let before = water.balance().left[DomainSide::East as usize];
+    run(&mut water, 60.0);
+    let discharge = (water.balance().left[DomainSide::East as usize] - before) / 60.0 / 2.0;
+    let coefficient = discharge / (f64::from(GRAVITY) * head.powi(3)).sqrt();
+    println!("{head} | {discharge:.4} | {coefficient:.4}");
+    coefficient
 }
 
 /// A closed gate that is opened lets the water run as if there had never been one.
@@ -122,7 +140,9 @@ pub fn an_open_gate_leaves_no_trace(run: Run) {
     for _ in 0..5 {
         run(&mut gated, 2.0);
         run(&mut free, 2.0);
-        assert_eq!(gated.depths(), free.depths());
+        let difference = |(gated, free): (&f32, &f32)| (gated - free).abs();
+        let worst = gated.depths().iter().zip(free.depths()).map(difference).fold(0.0, f32::max);
+        assert!(worst <= 1e-5, "{worst}");
         assert!((gated.volume() / before - 1.0).abs() <= 1e-7);
     }
     let reached = (0..free.depths().len()).filter(|&index| !is_left(index) && free.depths()[index] > 0.01).count();
@@ -131,9 +151,7 @@ pub fn an_open_gate_leaves_no_trace(run: Run) {
 
 /// The bed rises and falls under running water, and the volume stays what it was.
 pub fn a_moving_bed_keeps_the_volume(run: Run) {
-    let bed = |heave: f64| {
-        bed_grid(COUNT, COUNT, 1.0, move |x, z| 0.02 * z + heave * (-0.02 * (x * x + z * z)).exp())
-    };
+    let bed = |heave: f64| bed_grid(COUNT, COUNT, 1.0, move |x, z| 0.02 * z + heave * (-0.02 * (x * x + z * z)).exp());
     let mut water = ShallowWater::new(&bed(0.0)).expect("a finite bed");
     water.fill(0.3).expect("a sane level");
     let before = water.volume();
@@ -146,5 +164,5 @@ pub fn a_moving_bed_keeps_the_volume(run: Run) {
         worst = worst.max((water.volume() / before - 1.0).abs());
     }
     println!("bed heaved 50 times by up to 8 m: volume off by {worst:.1e}");
-    assert!(worst <= 1e-8, "{worst}");
+    assert!(worst <= 1e-7, "{worst}");
 }

@@ -1,0 +1,484 @@
+//! Keeps the simulation of every water: makes it, changes it, advances it, and says what it has come to.
+use super::{
+    GpuEdge, GpuShallow, Ground, Held, Returned, ShallowFrame, ShallowWork, StartState,
+    domain::{cells_of, ground_below, set_edges, set_walls},
+    frame::pictures,
+};
+use crate::{
+    body::{
+        ResolvedBed, ResolvedWater, SimulationBackend, SimulationStart, WaterEdges, WaterSimulation, WaterSources,
+        WaterWalls,
+    },
+    report::Reported,
+};
+use bevy::{
+    ecs::query::QueryData,
+    prelude::*,
+    render::renderer::{RenderAdapterInfo, RenderDevice},
+};
+use freshet_hydro::{
+    shallow_water::{Balance, CLOSED, Field, PointSource, Restored, ShallowWater},
+    waves::GRAVITY,
+};
+use std::{
+    sync::{Arc, atomic::Ordering},
+    time::Duration,
+};
+
+/// Most time that a water on the GPU may owe, s of the frame's clock.
+const MOST_OWED: f32 = 0.25;
+/// A state of the GPU is carried on for so long at most, s.
+const OLDEST: f32 = 0.25;
+/// Steps are planned for a signal that is faster than the last known one by this factor.
+const RESERVE: f64 = 1.5;
+
+/// The simulation of a water, and the pictures of it that the surface's shader reads.
+#[derive(Component, Default)]
+pub(crate) struct Simulated {
+    simulation: Option<Box<Simulation>>,
+    pub pictures: Option<[Handle<Image>; 2]>,
+}
+
+/// A running simulation.
+struct Simulation {
+    water: ShallowWater,
+    made_of: MadeOf,
+    ground: Option<GroundKey>,
+    applied: Option<Applied>,
+    field: Arc<Field>,
+    on_gpu: Option<OnGpu>,
+}
+
+/// What a simulation begins anew for.
+#[derive(Clone, Debug, PartialEq)]
+struct MadeOf {
+    size: UVec2,
+    cell: f32,
+    start: SimulationStart,
+    backend: SimulationBackend,
+}
+
+/// Which ground is under the cells.
+#[derive(Clone, Debug, PartialEq)]
+struct GroundKey {
+    bed: Option<(usize, [f32; 6], f32)>,
+    level: f32,
+    flat: f32,
+}
+
+/// What has been handed to the simulation.
+#[derive(Clone, Debug, PartialEq)]
+struct Applied {
+    edges: WaterEdges,
+    sources: WaterSources,
+    walls: WaterWalls,
+    manning: f32,
+    rain: f32,
+}
+
+/// How far the GPU has come.
+#[derive(Default)]
+struct OnGpu {
+    held: Arc<Held>,
+    /// Versions of state and ground.
+    start: u64,
+    ground: u64,
+    /// Time asked for since the state was set, s.
+    asked: f64,
+    /// Book and time when the state was set.
+    balance: Balance,
+    began: f64,
+    /// Simulated time of the newest state that came back, since then, s.
+    returned: f64,
+    owed: f64,
+    late: u32,
+}
+
+/// A water and all that its simulation is made by.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(super) struct Waters {
+    entity: Entity,
+    resolved: &'static ResolvedWater,
+    settings: &'static WaterSimulation,
+    edges: &'static WaterEdges,
+    sources: &'static WaterSources,
+    walls: &'static WaterWalls,
+    simulated: &'static mut Simulated,
+}
+
+impl Simulated {
+    /// The newest state, and its age in seconds.
+    pub fn field(&self) -> Option<(Arc<Field>, f32)> {
+        let simulation = self.simulation.as_ref()?;
+        let age = simulation.on_gpu.as_ref().map_or(0.0, |gpu| (gpu.asked - gpu.returned).clamp(0.0, OLDEST.into()));
+        Some((simulation.field.clone(), age as f32))
+    }
+}
+
+/// Advances the waters that are simulated on the CPU, in every fixed step.
+pub(super) fn simulate_on_cpu(
+    time: Res<Time>,
+    adapter: Option<Res<RenderAdapterInfo>>,
+    device: Option<Res<RenderDevice>>,
+    mut reported: ResMut<Reported>,
+    mut waters: Query<Waters>,
+) {
+    let gpu = UsableGpu::new(adapter.as_deref(), device.as_deref());
+    for mut water in &mut waters {
+        prepare(&mut water, &gpu, &mut reported);
+        let (entity, settings) = (water.entity, water.settings);
+        let Some(simulation) = water.simulated.simulation.as_mut().filter(|simulation| simulation.on_gpu.is_none())
+        else {
+            continue;
+        };
+        let duration = time.delta_secs_f64() * f64::from(speed(entity, settings, &mut reported));
+        if duration > 0.0 {
+            let advance = simulation.water.advance(duration, most_steps(entity, settings, &mut reported));
+            simulation.see(advance.time);
+            if advance.left > 0.0 {
+                reported.warn(entity, "WaterSimulation::max_steps", "does not suffice: the water runs late");
+            }
+        }
+    }
+}
+
+/// Takes what the GPU has come to, and asks it for the time of the frame.
+pub(super) fn simulate_on_gpu(
+    time: Res<Time>,
+    adapter: Option<Res<RenderAdapterInfo>>,
+    device: Option<Res<RenderDevice>>,
+    mut commands: Commands,
+    mut images: ResMut<Assets<Image>>,
+    mut reported: ResMut<Reported>,
+    mut waters: Query<Waters>,
+) {
+    let gpu = UsableGpu::new(adapter.as_deref(), device.as_deref());
+    for mut water in &mut waters {
+        prepare(&mut water, &gpu, &mut reported);
+        let (entity, settings) = (water.entity, water.settings);
+        let Simulated { simulation: Some(simulation), pictures } = &mut *water.simulated else {
+            commands.entity(entity).remove::<ShallowFrame>();
+            continue;
+        };
+        if device.is_none() {
+            continue;
+        }
+        let pictures = pictures_of(pictures, simulation.made_of.size, &mut images);
+        let work = if simulation.on_gpu.is_some() {
+            simulation.take_returned();
+            let speed = speed(entity, settings, &mut reported);
+            let steps = most_steps(entity, settings, &mut reported);
+            let work = simulation.ask(time.delta().mul_f32(speed), steps, speed);
+            if simulation.on_gpu.as_ref().is_some_and(|gpu| gpu.late > 30) {
+                reported.warn(entity, "WaterSimulation::max_steps", "does not suffice: the water runs late");
+            }
+            ShallowWork::Gpu(Box::new(work))
+        } else {
+            ShallowWork::Cpu(simulation.field.clone())
+        };
+        commands.entity(entity).insert(ShallowFrame { work, pictures: pictures.map(|picture| picture.id()) });
+    }
+}
+
+fn pictures_of(known: &mut Option<[Handle<Image>; 2]>, size: UVec2, images: &mut Assets<Image>) -> [Handle<Image>; 2] {
+    let fits = |pair: &[Handle<Image>; 2]| images.get(&pair[0]).is_some_and(|image| image.size() == size);
+    if let Some(pair) = known.as_ref().filter(|pair| fits(pair)) {
+        return pair.clone();
+    }
+    known.insert(pictures(size).map(|image| images.add(image))).clone()
+}
+
+fn speed(entity: Entity, settings: &WaterSimulation, reported: &mut Reported) -> f32 {
+    reported.clamp(entity, "WaterSimulation::speed", settings.speed, 0.0..=1e4, 1.0)
+}
+
+fn most_steps(entity: Entity, settings: &WaterSimulation, reported: &mut Reported) -> u32 {
+    reported.clamp(entity, "WaterSimulation::max_steps", settings.max_steps as f32, 1.0..=4096.0, 64.0) as u32
+}
+
+/// A GPU that can simulate.
+struct UsableGpu {
+    /// What is missing, if something is.
+    missing: Option<String>,
+    is_hardware: bool,
+    largest_binding: u64,
+}
+
+impl UsableGpu {
+    fn new(adapter: Option<&RenderAdapterInfo>, device: Option<&RenderDevice>) -> Self {
+        let Some(device) = device else {
+            return Self { missing: Some("there is no GPU".into()), is_hardware: false, largest_binding: 0 };
+        };
+        let limits = device.limits();
+        let buffers = limits.max_storage_buffers_per_shader_stage;
+        let missing =
+            (buffers < 8).then(|| format!("max_storage_buffers_per_shader_stage is {buffers}, and 8 are needed"));
+        // The type of the device has no name in the engine.
+        let is_software = adapter.is_some_and(|adapter| format!("{:?}", adapter.device_type) == "Cpu");
+        let largest_binding = limits.max_storage_buffer_binding_size as u64;
+        Self { missing, is_hardware: !is_software, largest_binding }
+    }
+
+    /// Whether a water of so many cells is simulated on the GPU.
+    fn is_chosen(&self, entity: Entity, backend: SimulationBackend, cells: u64, reported: &mut Reported) -> bool {
+        let room = (cells * 16 > self.largest_binding).then(|| {
+            let most = self.largest_binding / 16;
+            format!("max_storage_buffer_binding_size has room for {most} cells, and {cells} are needed")
+        });
+        let missing = self.missing.clone().or(room);
+        match (backend, missing) {
+            (SimulationBackend::Cpu, _) | (SimulationBackend::Auto, Some(_)) => false,
+            (SimulationBackend::Auto, None) => self.is_hardware,
+            (SimulationBackend::Gpu, None) => true,
+            (SimulationBackend::Gpu, Some(missing)) => {
+                let problem = format_args!("asks for a GPU, but {missing}; the CPU is used");
+                reported.warn(entity, "WaterSimulation::backend", problem);
+                false
+            }
+        }
+    }
+}
+
+/// Makes the simulation if there is none that fits, and hands it what has changed.
+fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
+    let (entity, settings, resolved) = (water.entity, water.settings, water.resolved);
+    if resolved.half_size == Vec2::ZERO {
+        water.simulated.simulation = None;
+        return;
+    }
+    let cell = reported.clamp(entity, "WaterSimulation::cell_size", settings.cell_size, 1e-3..=1e5, 1.0);
+    let (size, cell) = cells_of(resolved.half_size, cell);
+    let made_of = MadeOf { size, cell, start: settings.start, backend: settings.backend };
+    let fits = water.simulated.simulation.as_ref().is_some_and(|simulation| simulation.made_of == made_of);
+    if !fits {
+        let ground = ground_below(resolved, settings, size, cell);
+        match Simulation::new(made_of, &ground) {
+            Ok(mut simulation) => {
+                simulation.ground = Some(GroundKey::new(resolved, settings));
+                let cells = u64::from(size.x) * u64::from(size.y);
+                let on_gpu = gpu.is_chosen(entity, settings.backend, cells, reported);
+                simulation.on_gpu = on_gpu.then(|| OnGpu { start: 1, ground: 1, ..default() });
+                if let Some(gpu) = &mut simulation.on_gpu {
+                    gpu.balance = simulation.water.balance();
+                }
+                water.simulated.simulation = Some(Box::new(simulation));
+            }
+            Err(error) => {
+                reported.warn(entity, "WaterSimulation", format_args!("cannot begin: {error}"));
+                water.simulated.simulation = None;
+                return;
+            }
+        }
+    }
+    let Some(simulation) = &mut water.simulated.simulation else { return };
+    simulation.follow_ground(resolved, settings);
+    let applied = Applied {
+        edges: water.edges.clone(),
+        sources: water.sources.clone(),
+        walls: water.walls.clone(),
+        manning: settings.manning,
+        rain: settings.rain,
+    };
+    simulation.apply(entity, applied, reported);
+}
+
+impl GroundKey {
+    fn new(water: &ResolvedWater, settings: &WaterSimulation) -> Self {
+        let key =
+            |bed: &ResolvedBed| (Arc::as_ptr(&bed.elevations).addr(), bed.bed_from_local.to_cols_array(), bed.base);
+        Self { bed: water.bed.as_ref().map(key), level: water.level, flat: settings.ground }
+    }
+}
+
+impl Simulation {
+    fn new(
+        made_of: MadeOf,
+        ground: &freshet_hydro::grid::Grid<f32>,
+    ) -> Result<Self, freshet_hydro::shallow_water::ShallowWaterError> {
+        let mut water = ShallowWater::new(ground)?;
+        match made_of.start {
+            SimulationStart::Still => water.fill(0.0)?,
+            SimulationStart::Dry => {}
+            SimulationStart::Column { at, half_size, level } => water.set_water(|place, bed| {
+                let is_inside = (place - at).abs().cmple(half_size).all();
+                (if is_inside { (level - bed).max(0.0) } else { 0.0 }, Vec2::ZERO)
+            })?,
+        }
+        let field = Arc::new(Field::new(&water, None, 0.0));
+        Ok(Self { water, made_of, ground: None, applied: None, field, on_gpu: None })
+    }
+
+    /// The field of the newest state, `elapsed` seconds after the one before.
+    fn see(&mut self, elapsed: f64) {
+        self.field = Arc::new(Field::new(&self.water, Some(&self.field), elapsed));
+    }
+
+    fn follow_ground(&mut self, resolved: &ResolvedWater, settings: &WaterSimulation) {
+        let key = GroundKey::new(resolved, settings);
+        if self.ground.as_ref() == Some(&key) {
+            return;
+        }
+        let ground = ground_below(resolved, settings, self.made_of.size, self.made_of.cell);
+        // A bed that the simulation refuses leaves the one that it has.
+        if self.water.set_bed(&ground).is_ok() {
+            self.new_ground();
+            self.see(0.0);
+        }
+        self.ground = Some(key);
+    }
+
+    fn new_ground(&mut self) {
+        if let Some(gpu) = &mut self.on_gpu {
+            gpu.ground += 1;
+        }
+    }
+
+    /// Hands over edges, sources, walls and numbers that have changed.
+    fn apply(&mut self, entity: Entity, wanted: Applied, reported: &mut Reported) {
+        if self.applied.as_ref() == Some(&wanted) {
+            return;
+        }
+        let before = self.applied.take();
+        let mut refuse = |field, result: Result<(), freshet_hydro::shallow_water::ShallowWaterError>| {
+            if let Err(error) = result {
+                reported.warn(entity, field, format_args!("is refused: {error}"));
+            }
+        };
+        refuse("WaterEdges", set_edges(&mut self.water, &wanted.edges));
+        refuse("WaterSimulation::manning", self.water.set_manning(wanted.manning));
+        // mm/h to m/s
+        refuse("WaterSimulation::rain", self.water.set_rain(wanted.rain / 3.6e6));
+        if before.as_ref().is_none_or(|before| before.walls != wanted.walls) {
+            refuse("WaterWalls", set_walls(&mut self.water, &wanted.walls));
+            self.new_ground();
+        }
+        if before.as_ref().is_none_or(|before| before.sources != wanted.sources) {
+            let source = |source: &crate::body::WaterSource| PointSource {
+                at: source.at,
+                radius: source.radius,
+                rate: source.rate.clone(),
+            };
+            refuse("WaterSources", self.water.set_sources(wanted.sources.sources.iter().map(source).collect()));
+            self.new_ground();
+        }
+        self.applied = Some(wanted);
+    }
+
+    /// Takes over the newest state that the GPU has come to.
+    fn take_returned(&mut self) {
+        let Some(gpu) = &mut self.on_gpu else { return };
+        let Some(returned) = gpu.held.take().filter(|returned| returned.start == gpu.start) else { return };
+        gpu.late = if returned.owed > 1e-4 && returned.steps > 0 { gpu.late + 1 } else { 0 };
+        gpu.owed = returned.owed;
+        if returned.time <= gpu.returned {
+            return;
+        }
+        let elapsed = returned.time - gpu.returned;
+        gpu.returned = returned.time;
+        let restored = Restored {
+            time: gpu.began + returned.time,
+            fastest_signal: returned.fastest,
+            balance: balance(&gpu.balance, &returned, &self.water),
+        };
+        self.water.restore(returned.cells.iter().map(|cell| cell.to_array()), restored);
+        self.see(elapsed);
+    }
+
+    /// What the GPU is asked to do for a frame of this duration.
+    fn ask(&mut self, duration: Duration, most: u32, speed: f32) -> super::GpuWork {
+        let forcing = self.water.forcing();
+        let (rain, entering, longest) = (forcing.rain, forcing.entering, forcing.longest_step);
+        let sources = forcing.sources.to_vec();
+        let gpu = self.on_gpu.get_or_insert_default();
+        // A lost device takes the state with it: what came back last is the beginning of another one.
+        let holds = gpu.held.start.load(Ordering::Relaxed) == gpu.start;
+        if !holds && gpu.held.was_lost() {
+            gpu.start += 1;
+            gpu.began = self.water.time();
+            (gpu.asked, gpu.returned, gpu.balance) = (0.0, 0.0, self.water.balance());
+        }
+        let added = if holds { duration.as_secs_f64() } else { 0.0 };
+        gpu.asked += added;
+        let signal = f64::from(self.water.courant() * self.water.cell_size())
+            / f64::from(self.water.fastest_signal().max(entering).max(1e-3));
+        let needed = (RESERVE * (added + gpu.owed) / signal.min(f64::from(longest))).ceil() + 2.0;
+        let size = self.water.size();
+        let manning = self.water.manning();
+        let periodic = self.water.periodic();
+        let numbers = GpuShallow {
+            size: size.as_ivec2(),
+            periodic: uvec2(periodic.0.into(), periodic.1.into()),
+            cell: self.water.cell_size(),
+            courant: self.water.courant(),
+            drag: GRAVITY * manning * manning,
+            rain,
+            added: added as f32,
+            most_owed: (MOST_OWED * speed).max(added as f32),
+            entering,
+            longest,
+        };
+        let has_walls = self.water.crests().is_some();
+        let has_sources = self.water.has_sources();
+        let start = (!holds).then(|| {
+            Arc::new(StartState {
+                version: gpu.start,
+                cells: self.water.conserved().map(Vec4::from).collect(),
+                fastest: self.water.fastest_signal(),
+            })
+        });
+        let has_ground = gpu.held.ground.load(Ordering::Relaxed) == gpu.ground;
+        let version = gpu.ground;
+        let ground = (!holds || !has_ground || has_sources).then(|| {
+            Arc::new(Ground {
+                version,
+                bed: self.water.bed().to_vec(),
+                extras: extras(&self.water, &sources, has_walls || has_sources),
+            })
+        });
+        super::GpuWork {
+            numbers,
+            edges: self.water.edge_cells().map(|(kind, value)| GpuEdge { kind, value }).collect(),
+            start,
+            ground,
+            has_walls,
+            has_sources,
+            steps: (needed as u32).min(most).next_multiple_of(2),
+            held: self.on_gpu.as_ref().map(|gpu| gpu.held.clone()).unwrap_or_default(),
+        }
+    }
+}
+
+/// Crests and sources of every cell; nothing if there are none.
+fn extras(water: &ShallowWater, sources: &[f32], any: bool) -> Vec<Vec4> {
+    if !any {
+        return Vec::new();
+    }
+    let open =
+        || Box::new(std::iter::repeat_n([f32::NEG_INFINITY; 2], water.bed().len())) as Box<dyn Iterator<Item = _>>;
+    let crests = water.crests().map_or_else(open, |crests| Box::new(crests));
+    // Shaders need not know infinity.
+    let finite = |crest: f32| if crest == CLOSED { 1e30 } else { crest.max(-1e30) };
+    let source = |i: usize| sources.get(i).copied().unwrap_or_default();
+    crests.enumerate().map(|(i, [east, south])| vec4(finite(east), finite(south), source(i), 0.0)).collect()
+}
+
+/// The book of a state that came back.
+fn balance(before: &Balance, returned: &Returned, water: &ShallowWater) -> Balance {
+    let cell = f64::from(water.cell_size());
+    let count = water.bed().len() as f64;
+    let rain = returned.rained * count * cell * cell;
+    let mut balance = *before;
+    balance.rain += rain;
+    if water.has_sources() {
+        balance.sources += returned.given * cell * cell - rain;
+    }
+    let (columns, rows) = (water.size().x as usize, water.size().y as usize);
+    let mut sides = returned.left.as_slice();
+    for (left, length) in balance.left.iter_mut().zip([rows, rows, columns, columns]) {
+        let (side, rest) = sides.split_at(length.min(sides.len()));
+        *left += side.iter().sum::<f64>() * cell;
+        sides = rest;
+    }
+    balance
+}

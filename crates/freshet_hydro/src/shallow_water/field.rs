@@ -1,0 +1,229 @@
+//! The surface of a simulated water as others see it: level, depth and velocity at any place, smooth over the wet cells.
+use super::ShallowWater;
+use glam::{UVec2, Vec2, Vec4, Vec4Swizzles};
+
+/// Depth, m, from which on a cell counts as wet for those who look at the water.
+pub const WET: f32 = 1e-3;
+
+/// A state of a [`ShallowWater`] for looking up places, with how fast its level changes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Field {
+    size: UVec2,
+    cell_size: f32,
+    /// Level (m), depth (m) and velocity (m/s) of every cell.
+    cells: Vec<Vec4>,
+    /// ∂η/∂t of every cell, m/s.
+    rising: Vec<f32>,
+    /// Slope of the level in every wet cell.
+    slopes: Vec<Vec2>,
+    lowest: f32,
+    highest: f32,
+    steepest: f32,
+    fastest: f32,
+}
+
+/// The water of a [`Field`] at one place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FieldSample {
+    /// Level, m.
+    pub level: f32,
+    /// Slope of the level along x and z.
+    pub slope: Vec2,
+    /// Velocity, m/s.
+    pub velocity: Vec2,
+    /// ∂η/∂t, m/s.
+    pub rising: f32,
+}
+
+/// The shares of four cells around a place: bilinear, of wet cells only, summing to one; nothing if all are dry.
+fn wet_shares(cells: [Vec4; 4], shares: [f32; 4]) -> Option<[f32; 4]> {
+    let mut wet = shares;
+    for (share, cell) in wet.iter_mut().zip(cells) {
+        *share = if cell.y > WET { *share } else { 0.0 };
+    }
+    let sum = wet[0] + wet[1] + wet[2] + wet[3];
+    (sum > 1e-4).then(|| wet.map(|share| share / sum))
+}
+
+/// Level that a cell counts with beside water at `level`: a dry cell above it is a bank, up which water does not climb; one
+/// below it is ground towards which a front falls.
+fn beside(cell: Vec4, level: f32) -> f32 {
+    if cell.y > WET { cell.x } else { cell.x.min(level) }
+}
+
+impl Field {
+    /// The state of `water`, rising as it has since `before`, which was `elapsed` (s) earlier.
+    pub fn new(water: &ShallowWater, before: Option<&Self>, elapsed: f64) -> Self {
+        let size = water.size();
+        let cell = |index| {
+            let velocity = water.velocity(index);
+            Vec4::new(water.level(index), water.depths()[index], velocity.x, velocity.y)
+        };
+        let cells: Vec<Vec4> = (0..water.depths().len()).map(cell).collect();
+        let before = before.filter(|before| before.cells.len() == cells.len() && elapsed > 0.0);
+        let rising = match before {
+            Some(before) => {
+                let rate = |(now, then): (&Vec4, &Vec4)| {
+                    if now.y > WET && then.y > WET { (now.x - then.x) / elapsed as f32 } else { 0.0 }
+                };
+                cells.iter().zip(&before.cells).map(rate).collect()
+            }
+            None => vec![0.0; cells.len()],
+        };
+        let mut field = Self { size, cell_size: water.cell_size(), cells, rising, ..Self::default() };
+        field.find_slopes();
+        field.find_bounds();
+        field
+    }
+
+    fn find_slopes(&mut self) {
+        let (columns, rows) = (self.size.x as usize, self.size.y as usize);
+        let slope = |index: usize| {
+            let (column, row) = (index % columns, index / columns);
+            let here = self.cells[index];
+            if here.y <= WET {
+                return Vec2::ZERO;
+            }
+            let level = |exists: bool, at: usize| if exists { beside(self.cells[at], here.x) } else { here.x };
+            let x = level(column + 1 < columns, index + 1) - level(column > 0, index.wrapping_sub(1));
+            let z = level(row + 1 < rows, index + columns) - level(row > 0, index.wrapping_sub(columns));
+            Vec2::new(x, z) / (2.0 * self.cell_size)
+        };
+        self.slopes = (0..self.cells.len()).map(slope).collect();
+    }
+
+    fn find_bounds(&mut self) {
+        (self.lowest, self.highest) = (f32::INFINITY, f32::NEG_INFINITY);
+        for (cell, slope) in self.cells.iter().zip(&self.slopes).filter(|(cell, _)| cell.y > WET) {
+            self.lowest = self.lowest.min(cell.x);
+            self.highest = self.highest.max(cell.x);
+            self.steepest = self.steepest.max(slope.length());
+            self.fastest = self.fastest.max(cell.zw().length());
+        }
+        if self.lowest > self.highest {
+            (self.lowest, self.highest) = (0.0, 0.0);
+        }
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> UVec2 {
+        self.size
+    }
+
+    /// Side of a cell, m.
+    pub fn cell_size(&self) -> f32 {
+        self.cell_size
+    }
+
+    /// Level (m), depth (m) and velocity (m/s) of every cell, row by row from the north.
+    pub fn cells(&self) -> &[Vec4] {
+        &self.cells
+    }
+
+    /// Slope of the level along x and z in every cell; 0 where it is dry.
+    pub fn slopes(&self) -> &[Vec2] {
+        &self.slopes
+    }
+
+    /// Lowest and highest level of wet cells, m; 0 if all is dry.
+    pub fn levels(&self) -> (f32, f32) {
+        (self.lowest, self.highest)
+    }
+
+    /// Steepest slope of the level.
+    pub fn steepest(&self) -> f32 {
+        self.steepest
+    }
+
+    /// Greatest speed, m/s.
+    pub fn fastest(&self) -> f32 {
+        self.fastest
+    }
+
+    /// The water at local (x, z) in metres, `age` (s) later than the field is: `None` where all cells around it are dry.
+    ///
+    /// Outside the outermost cell centres the nearest point on their rectangle counts.
+    pub fn sample(&self, place: Vec2, age: f32) -> Option<FieldSample> {
+        let last = self.size - 1;
+        let p = (place / self.cell_size + (self.size.as_vec2() / 2.0 - 0.5)).clamp(Vec2::ZERO, last.as_vec2());
+        let low = p.floor().as_uvec2();
+        let high = (low + 1).min(last);
+        let index = |x: u32, z: u32| (z * self.size.x + x) as usize;
+        let around = [index(low.x, low.y), index(high.x, low.y), index(low.x, high.y), index(high.x, high.y)];
+        let t = p - p.floor();
+        let shares = [(1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y];
+        let cells = around.map(|index| self.cells[index]);
+        let wet = wet_shares(cells, shares)?;
+        let mut sample = FieldSample::default();
+        let mut mean = 0.0;
+        for k in 0..4 {
+            mean += wet[k] * cells[k].x;
+            sample.slope += wet[k] * self.slopes[around[k]];
+            sample.velocity += wet[k] * cells[k].zw();
+            sample.rising += wet[k] * self.rising[around[k]];
+        }
+        for k in 0..4 {
+            sample.level += shares[k] * beside(cells[k], mean);
+        }
+        sample.level += age * sample.rising;
+        Some(sample)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Grid;
+    use glam::{uvec2, vec2};
+
+    /// A lake whose shore lies at x = 0, with a tilted surface.
+    fn lake() -> Field {
+        let bed = Grid::from_fn(uvec2(20, 8), 1.0, |cell| if cell.x < 10 { -2.0 } else { 3.0 }).expect("a valid shape");
+        let mut water = ShallowWater::new(&bed).expect("a finite bed");
+        water.set_water(|at, bed| ((0.1 * at.x - bed).max(0.0), vec2(0.5, -0.25))).expect("sane water");
+        Field::new(&water, None, 0.0)
+    }
+
+    #[test]
+    fn a_plane_is_sampled_exactly_and_does_not_climb_the_bank() {
+        let field = lake();
+        let inside = field.sample(vec2(-4.2, 0.7), 0.0).expect("water");
+        assert!((inside.level + 0.42).abs() < 1e-5 && (inside.slope - vec2(0.1, 0.0)).length() < 1e-5);
+        assert!((inside.velocity - vec2(0.5, -0.25)).length() < 1e-6);
+        // Between the last wet centre and the first dry one the level is that of the wet one.
+        let shore = field.sample(vec2(0.3, 0.0), 0.0).expect("water");
+        assert!((shore.level + 0.05).abs() < 1e-5, "{shore:?}");
+        assert_eq!(field.sample(vec2(5.0, 0.0), 0.0), None);
+    }
+
+    #[test]
+    fn a_front_falls_to_the_ground_before_it() {
+        let bed = Grid::new(uvec2(9, 3), 1.0, vec![0.0; 27]).expect("a valid shape");
+        let mut water = ShallowWater::new(&bed).expect("a finite bed");
+        water.set_water(|at, _| (if at.x < 0.5 { 0.4 } else { 0.0 }, Vec2::ZERO)).expect("sane water");
+        let field = Field::new(&water, None, 0.0);
+        let level = |x| field.sample(vec2(x, 0.0), 0.0).map(|sample| sample.level);
+        assert_eq!([level(-0.5), level(0.0), level(0.25), level(0.5)], [Some(0.4), Some(0.4), Some(0.3), Some(0.2)]);
+        assert_eq!(level(1.5), None);
+    }
+
+    #[test]
+    fn bounds_are_those_of_wet_cells() {
+        let field = lake();
+        let (lowest, highest) = field.levels();
+        assert!((lowest + 0.95).abs() < 1e-5 && (highest + 0.05).abs() < 1e-5);
+        assert!((field.steepest() - 0.1).abs() < 1e-5 && (field.fastest() - 0.559).abs() < 1e-3);
+    }
+
+    #[test]
+    fn an_older_field_goes_on_rising() {
+        let bed = Grid::new(uvec2(4, 4), 1.0, vec![0.0; 16]).expect("a valid shape");
+        let mut water = ShallowWater::new(&bed).expect("a finite bed");
+        water.fill(1.0).expect("a sane level");
+        let before = Field::new(&water, None, 0.0);
+        water.fill(1.2).expect("a sane level");
+        let now = Field::new(&water, Some(&before), 0.5);
+        let level = |age| now.sample(Vec2::ZERO, age).expect("water").level;
+        assert!((level(0.0) - 1.2).abs() < 1e-6 && (level(0.25) - 1.3).abs() < 1e-5);
+    }
+}
