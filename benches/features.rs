@@ -66,7 +66,7 @@ impl Bench {
             out: Some("bench.png".into()),
             ..Options::parse_from(["bench"])
         };
-        let mut app = river::app(&options)?;
+        let mut app = river::app(&options, river::Flow::Map)?;
         app.add_plugins(RenderDiagnosticsPlugin);
         common::start(&mut app);
         app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(common::FRAME)));

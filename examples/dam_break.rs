@@ -12,13 +12,9 @@ const LEVEL: f32 = 0.8;
 
 fn main() -> AppExit {
     let mut app = common::app("bevy_freshet: dam break", &Options::parse());
-    app.add_plugins((
-        RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
-        WaterPlugin,
-        SkyPlugin,
-    ))
-    .insert_resource(TimestepMode::Fixed { dt: common::FRAME as f32, substeps: 1 })
-    .add_systems(Startup, (setup, crates));
+    app.add_plugins((RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(), WaterPlugin, SkyPlugin))
+        .insert_resource(TimestepMode::Fixed { dt: common::FRAME as f32, substeps: 1 })
+        .add_systems(Startup, (setup, crates));
     common::run(app)
 }
 
@@ -42,7 +38,8 @@ fn setup(mut commands: Commands, assets: Res<AssetServer>, mut loading: ResMut<L
         },
         WaterEdges { parts: DomainSide::ALL.map(|side| WaterEdge::all(side, Edge::Open)).into(), ..default() },
         WaterOptics::MUDDY,
-        WaterWaves::default(),
+        // Foam where the front breaks, and not wherever the water is fast.
+        WaterFoam { speed: 0.0, ..default() },
         Transform::from_xyz(-20.0, LEVEL, 40.0),
     ));
 

@@ -1,5 +1,7 @@
 //! A real river: checkered balls, crates, logs and a boat float down a meandering channel.
 //!
+//! `--flow simulated` begins with a dry bed, which fills.
+//!
 //! With the feature `panel` every setting has a slider: F1 hides and shows them.
 //!
 //! `--camera` chooses from `bank`, `bend`, `drift`, `shallows`, `boat`, `above`, `bridge`, `noon`, `sunset`, `night`, `frost`
@@ -17,9 +19,18 @@ use bevy_rapier3d::prelude::*;
 use clap::Parser;
 use common::Options;
 
+#[derive(Parser)]
+struct RiverOptions {
+    #[command(flatten)]
+    options: Options,
+    /// Where the current comes from.
+    #[arg(long, value_enum, default_value_t)]
+    flow: river::Flow,
+}
+
 fn main() -> AppExit {
-    let options = Options::parse();
-    let mut app = river::app(&options).unwrap_or_else(|problem| common::fail(problem));
+    let RiverOptions { options, flow } = RiverOptions::parse();
+    let mut app = river::app(&options, flow).unwrap_or_else(|problem| common::fail(problem));
     #[cfg(feature = "panel")]
     app.add_plugins(river_panel::plugin);
     if options.out.is_some() {

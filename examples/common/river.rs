@@ -36,6 +36,8 @@ pub const LEVEL: f32 = 0.8;
 const START: Vec2 = Vec2::new(-98.0, 196.0);
 /// Where the river leaves the terrain, and a sensor returns bodies to the start.
 const END: Vec2 = Vec2::new(-2.0, 446.0);
+/// Time in which the simulated river fills, s.
+const FILLING: f32 = 3600.0;
 /// The ends of the footbridge.
 const BRIDGE: [Vec2; 2] = [Vec2::new(-107.0, 228.5), Vec2::new(-75.0, 223.0)];
 /// Where the boat lies.
@@ -43,16 +45,26 @@ const BOAT: Vec2 = Vec2::new(-24.0, 253.0);
 /// Number of bodies without the boat.
 const BODIES: usize = 24;
 
+/// Where the current of the river comes from.
+#[derive(clap::ValueEnum, Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Flow {
+    /// A map of the steady current, made beforehand
+    #[default]
+    Map,
+    /// The river is simulated: it begins dry, fills from its spring and from the sea, and finds its own current
+    Simulated,
+}
+
 /// An app with the river, seen as the options say.
 ///
 /// # Errors
 /// A camera that there is not; terrain or current that cannot be read.
-pub fn app(options: &Options) -> Result<App, Box<dyn std::error::Error>> {
+pub fn app(options: &Options, flow: Flow) -> Result<App, Box<dyn std::error::Error>> {
     let view = View::named(options.camera.as_deref())?;
     // Terrain and current are read before anything is drawn, so that a missing file is an error and not a dry river.
     let terrain = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/terrain");
     let bed = WaterBed::from_file(terrain.join("tidal_river_2m.asc"))?.filled(LEVEL + 0.4);
-    let flow = WaterFlow::from_file(terrain.join("tidal_river_flow.png"))?;
+    let map = WaterFlow::from_file(terrain.join("tidal_river_flow.png"))?;
 
     let mut app = common::app("bevy_freshet: the river", options);
     app.add_plugins((
@@ -63,15 +75,17 @@ pub fn app(options: &Options) -> Result<App, Box<dyn std::error::Error>> {
         FreeCameraPlugin,
     ))
     .insert_resource(TimestepMode::Fixed { dt: common::FRAME as f32, substeps: 1 })
-    .insert_resource(Scene { bed, flow, view })
-    .add_systems(Startup, (make_bodies, land, river, light, float).chain());
+    .insert_resource(Scene { bed, map, flow, view })
+    .add_systems(Startup, (make_bodies, land, river, light, float).chain())
+    .add_systems(Update, slow_down);
     Ok(app)
 }
 
 #[derive(Resource)]
 struct Scene {
     bed: WaterBed,
-    flow: WaterFlow,
+    map: WaterFlow,
+    flow: Flow,
     view: View,
 }
 
@@ -115,7 +129,7 @@ fn ground_collider(bed: &WaterBed) -> Collider {
 }
 
 /// The water, as large as the terrain.
-fn river(mut commands: Commands, scene: Res<Scene>) {
+fn river(mut commands: Commands, scene: Res<Scene>, options: Res<Options>) {
     let mut river = commands.spawn((
         Name::new("river"),
         Water::new(scene.bed.elevations().extent()),
@@ -123,9 +137,12 @@ fn river(mut commands: Commands, scene: Res<Scene>) {
         // A calm afternoon.
         WaterWaves::wind(2.2, 300.0, vec2(0.8, -0.5)).scaled(0.45),
         WaterSurface { ripples: 0.025, ..default() },
-        scene.flow.clone(),
         Transform::from_xyz(0.0, LEVEL, 0.0),
     ));
+    match scene.flow {
+        Flow::Map => river.insert(scene.map.clone()),
+        Flow::Simulated => river.insert(simulated(&options)),
+    };
     if scene.view.freezing > 0.0 {
         river.insert(WaterIce { freezing: scene.view.freezing, ..default() });
     }
@@ -135,6 +152,30 @@ fn river(mut commands: Commands, scene: Res<Scene>) {
         ReturnTo::new(vec3(START.x, LEVEL + 0.3, START.y)).with_spread(4.0),
         Transform::from_xyz(END.x, LEVEL, END.y),
     ));
+}
+
+/// The river as it fills: 25 m³/s come down from its upper arms, and at its mouth the sea stands at the still level.
+fn simulated(options: &Options) -> impl Bundle {
+    let spring = WaterSource { at: vec2(-42.0, -88.0), radius: 10.0, rate: 25.0.into() };
+    let mouth = WaterEdge { side: DomainSide::South, from: -24.0, to: 20.0, edge: Edge::Level(0.0.into()) };
+    // In a window it is watched; a picture is to show it full.
+    let seconds = if options.out.is_some() { options.frames as f32 * common::FRAME as f32 } else { 60.0 };
+    let settings = WaterSimulation {
+        cell_size: 2.0,
+        start: SimulationStart::Dry,
+        speed: (FILLING / seconds).max(1.0),
+        max_steps: 1024,
+        ..default()
+    };
+    (settings, WaterSources { sources: vec![spring] }, WaterEdges { parts: vec![mouth], ..default() })
+}
+
+/// Once the simulated river is full its clock runs as all others do.
+fn slow_down(time: Res<Time>, options: Res<Options>, mut rivers: Query<&mut WaterSimulation>) {
+    let filled = if options.out.is_some() { f32::INFINITY } else { 60.0 };
+    for mut river in rivers.iter_mut().filter(|river| river.speed > 1.0 && time.elapsed_secs() > filled) {
+        river.speed = 1.0;
+    }
 }
 
 /// Sky, sun or moon, and the camera.

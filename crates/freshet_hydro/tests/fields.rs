@@ -333,19 +333,25 @@ fn foam_is_born_where_its_criteria_hold_and_nowhere_else() {
         shore_depth: 0.2,
         shear: 0.2,
         shear_threshold: 0.25,
+        breaking: 0.5,
+        breaking_threshold: 0.1,
         speed: 0.1,
         speed_threshold: 1.2,
         bodies: 1.0,
     };
-    let calm = Stir { depth: 2.0, crest: 0.3, shear: 0.2, speed: 1.1, rim: 0.0, slip: 3.0 };
+    let calm = Stir { depth: 2.0, crest: 0.3, shear: 0.2, convergence: 0.05, speed: 1.1, rim: 0.0, slip: 3.0 };
     assert_eq!(sources.birth(&calm), 0.0);
     let (shore, breaking) = (Stir { depth: 0.05, crest: -0.1, ..calm }, Stir { depth: 0.05, ..calm });
     assert!((sources.birth(&shore) - 0.15 * 0.75 * foam::CALM_SHORE).abs() < 1e-6);
     assert!((sources.birth(&breaking) - 0.15 * 0.75).abs() < 1e-6, "waves that run up make all of the shore's foam");
     assert!((sources.birth(&Stir { shear: 1.25, ..calm }) - 0.2).abs() < 1e-6);
+    assert!((sources.birth(&Stir { convergence: 0.5, ..calm }) - 0.2).abs() < 1e-6);
     assert!((sources.birth(&Stir { speed: 2.2, ..calm }) - 0.1).abs() < 1e-6);
     assert!((sources.birth(&Stir { rim: 0.5, ..calm }) - 1.5).abs() < 1e-6);
     assert_eq!(sources.birth(&Stir { depth: 0.0, ..breaking }), 0.0, "no foam on land");
+    // Water that runs together from both sides, and water that only turns.
+    assert_eq!(foam::convergence(vec2(-0.5, 0.1), vec2(0.2, -0.25)), 0.75);
+    assert_eq!(foam::convergence(vec2(0.0, 1.0), vec2(-1.0, 0.0)), 0.0);
     // Simple shear counts in full, a turn as a whole not at all.
     assert_eq!(foam::shear(Vec2::ZERO, vec2(0.8, 0.0)), 0.8);
     assert_eq!(foam::shear(vec2(0.0, 0.5), vec2(-0.5, 0.0)), 0.0);

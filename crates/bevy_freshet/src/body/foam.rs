@@ -20,6 +20,11 @@ pub struct WaterFoam {
     pub shear: f32,
     /// Shear below which none is born, 1/s, 0…100. Default 0.13.
     pub shear_threshold: f32,
+    /// Foam born where the current runs together, as in hydraulic jumps and breaking fronts, per unit of convergence (1/s per 1/s),
+    /// 0…10. Default 1.
+    pub breaking: f32,
+    /// Convergence below which none is born, 1/s, 0…100. Default 0.4.
+    pub breaking_threshold: f32,
     /// Foam born in fast flow, 1/s for each m/s above the threshold, 0…10. Default 0.1.
     pub speed: f32,
     /// Speed below which none is born, m/s, 0…100. Default 0.85.
@@ -41,6 +46,8 @@ impl Default for WaterFoam {
             shore_depth: 0.2,
             shear: 0.2,
             shear_threshold: 0.13,
+            breaking: 1.0,
+            breaking_threshold: 0.4,
             speed: 0.1,
             speed_threshold: 0.85,
             bodies: 1.0,

@@ -215,6 +215,15 @@ const FOAM: Group = Group {
         row("Shore depth", "shore_depth", [0.01, 10.0], "m", "Depth below which the shore makes foam.").logarithmic(),
         row("Shear foam", "shear", [0.0, 10.0], "", "Foam born per unit of shear.").logarithmic(),
         row("Shear threshold", "shear_threshold", [0.0, 100.0], "1/s", "Shear below which none is born.").logarithmic(),
+        row(
+            "Breaking",
+            "breaking",
+            [0.0, 10.0],
+            "",
+            "Foam born where the current runs together, per unit of convergence.",
+        ),
+        row("Breaking threshold", "breaking_threshold", [0.0, 100.0], "1/s", "Convergence below which none is born.")
+            .logarithmic(),
         row("Speed foam", "speed", [0.0, 10.0], "1/s", "Foam born for each m/s above the threshold.").logarithmic(),
         row("Speed threshold", "speed_threshold", [0.0, 100.0], "m/s", "Speed below which none is born.").logarithmic(),
         row("Body foam", "bodies", [0.0, 10.0], "1/s", "Foam born for each m/s between body and water.").logarithmic(),

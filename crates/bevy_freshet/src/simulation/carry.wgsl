@@ -1,7 +1,7 @@
 // Stage: the current carries the rings along an axis, for one step. The twin is `Rings::carry` in `freshet_hydro`.
 #import freshet::simulation::numbers::{numbers, inside, index}
 
-@group(0) @binding(1) var<storage, read> ground: array<vec4<f32>>;              // current (m/s), depth (m), shear (1/s)
+@group(0) @binding(1) var<storage, read> ground: array<vec4<f32>>;              // current (m/s), depth (m), foam born by deformation (1/s)
 @group(0) @binding(2) var<storage, read> celerity: array<f32>;                  // m²/s²; 0 where it is dry
 @group(0) @binding(3) var<storage, read> waves: array<vec2<f32>>;               // η (m), v (m/s)
 @group(0) @binding(4) var<storage, read_write> waves_out: array<vec2<f32>>;

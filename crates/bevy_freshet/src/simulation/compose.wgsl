@@ -1,7 +1,7 @@
 // Stage: the fields as the surface's shader reads them. Runs last.
 #import freshet::simulation::numbers::{numbers, inside, index}
 
-@group(0) @binding(1) var<storage, read> ground: array<vec4<f32>>;      // current (m/s), depth (m), shear (1/s)
+@group(0) @binding(1) var<storage, read> ground: array<vec4<f32>>;      // current (m/s), depth (m), foam born by deformation (1/s)
 @group(0) @binding(2) var<storage, read> bodies: array<vec4<f32>>;      // velocity (m/s), cover, raise (m)
 @group(0) @binding(3) var<storage, read> waves: array<vec2<f32>>;       // η (m), v (m/s)
 @group(0) @binding(4) var<storage, read> matter: array<vec4<f32>>;      // foam, dye

@@ -3,7 +3,7 @@
 #import freshet::surface::bindings::surface
 #import freshet::surface::ground as surveyed
 
-@group(0) @binding(1) var<storage, read_write> ground: array<vec4<f32>>;    // current (m/s), depth (m), shear (1/s)
+@group(0) @binding(1) var<storage, read_write> ground: array<vec4<f32>>;    // current (m/s), depth (m), foam born by deformation (1/s)
 @group(0) @binding(2) var<storage, read_write> celerity: array<f32>;        // c² of the rings, m²/s²; 0 where it is dry
 
 // Beyond the water's rectangle there is as little water as where the bed has no data.
@@ -27,7 +27,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let along_x = (current_at(middle + vec2(step, 0.0)) - current_at(middle - vec2(step, 0.0))) / (2.0 * step);
     let along_z = (current_at(middle + vec2(0.0, step)) - current_at(middle - vec2(0.0, step))) / (2.0 * step);
     let shear = length(vec2(along_x.x - along_z.y, along_z.x + along_x.y));
-    ground[index(at)] = vec4(current_at(middle), depth, shear);
+    let convergence = -(along_x.x + along_z.y);
+    let births = numbers.shear * max(shear - numbers.shear_threshold, 0.0)
+        + numbers.breaking * max(convergence - numbers.breaking_threshold, 0.0);
+    ground[index(at)] = vec4(current_at(middle), depth, births);
     // c² = (g/k) tanh(k d); beyond k d = 10 the water is deep to the last digit.
     let relative = clamp(numbers.wavenumber * depth, 0.0, 10.0);
     celerity[index(at)] = min(numbers.deep_celerity * tanh(relative), numbers.most_celerity);

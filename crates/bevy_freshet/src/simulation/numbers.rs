@@ -54,6 +54,8 @@ pub(crate) struct GpuNumbers {
     pub shore_depth: f32,
     pub shear: f32,
     pub shear_threshold: f32,
+    pub breaking: f32,
+    pub breaking_threshold: f32,
     pub speed: f32,
     pub speed_threshold: f32,
     pub bodies: f32,
@@ -159,6 +161,9 @@ impl GpuNumbers {
         self.shear = clamp("WaterFoam::shear", foam.shear, 0.0..=10.0, usable.shear);
         self.shear_threshold =
             clamp("WaterFoam::shear_threshold", foam.shear_threshold, 0.0..=100.0, usable.shear_threshold);
+        self.breaking = clamp("WaterFoam::breaking", foam.breaking, 0.0..=10.0, usable.breaking);
+        self.breaking_threshold =
+            clamp("WaterFoam::breaking_threshold", foam.breaking_threshold, 0.0..=100.0, usable.breaking_threshold);
         self.speed = clamp("WaterFoam::speed", foam.speed, 0.0..=10.0, usable.speed);
         self.speed_threshold =
             clamp("WaterFoam::speed_threshold", foam.speed_threshold, 0.0..=100.0, usable.speed_threshold);

@@ -32,6 +32,8 @@ struct Numbers {
     shore_depth: f32,
     shear: f32,
     shear_threshold: f32,
+    breaking: f32,
+    breaking_threshold: f32,
     speed: f32,
     speed_threshold: f32,
     bodies: f32,

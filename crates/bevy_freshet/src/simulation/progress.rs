@@ -255,7 +255,7 @@ impl FieldProgress {
         }
         let open = settings.water.ice.as_ref().is_none_or(|ice| !ice.is_closed());
         let born = settings.water.bed.is_some() && numbers.shore > 0.0
-            || work.drifts && (numbers.shear > 0.0 || numbers.speed > 0.0)
+            || work.drifts && (numbers.shear + numbers.breaking + numbers.speed > 0.0)
             || !work.deposits.silhouettes.is_empty() && numbers.bodies > 0.0;
         if settings.foam.amount <= 0.0 {
             self.foam_left = 0.0;

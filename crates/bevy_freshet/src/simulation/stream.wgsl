@@ -4,7 +4,7 @@
 #import freshet::surface::frozen
 #import freshet::surface::waves
 
-@group(0) @binding(1) var<storage, read> ground: array<vec4<f32>>;          // current (m/s), depth (m), shear (1/s)
+@group(0) @binding(1) var<storage, read> ground: array<vec4<f32>>;          // current (m/s), depth (m), foam born by deformation (1/s)
 @group(0) @binding(2) var<storage, read> bodies: array<vec4<f32>>;          // velocity (m/s), cover, raise (m)
 @group(0) @binding(3) var<storage, read_write> stream: array<vec4<f32>>;    // velocity (m/s), depth (m), births (1/s)
 
@@ -49,7 +49,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     var velocity = here.xy;
     var births = shore(at, depth)
-        + numbers.shear * max(here.w - numbers.shear_threshold, 0.0)
+        + here.w
         + numbers.speed * max(length(here.xy) - numbers.speed_threshold, 0.0);
     if numbers.silhouettes > 0u {
         // A body drags along what it covers; the foam of its rim is born beside and not under it.

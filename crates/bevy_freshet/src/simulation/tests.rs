@@ -161,6 +161,8 @@ impl Twin {
             shore_depth: foam.shore_depth,
             shear: foam.shear,
             shear_threshold: foam.shear_threshold,
+            breaking: foam.breaking,
+            breaking_threshold: foam.breaking_threshold,
             speed: foam.speed,
             speed_threshold: foam.speed_threshold,
             bodies: foam.bodies,
@@ -169,6 +171,7 @@ impl Twin {
             depth,
             crest: water.waves.displacement(place, 1.0).y,
             shear: foam::shear(along(Vec2::X), along(Vec2::Y)),
+            convergence: foam::convergence(along(Vec2::X), along(Vec2::Y)),
             speed: current.length(),
             rim: nearest.map_or(0.0, |one| one.cover * (1.0 - own.1)),
             slip: nearest.map_or(0.0, |one| one.velocity.distance(current)),
@@ -248,7 +251,7 @@ fn compare_with_twins(dyed: bool) {
     let flow = WaterFlow { uniform: vec2(0.05, -0.1), ..WaterFlow::from_map(current.unwrap()) };
     let train = Wave { direction: vec2(0.3, 1.0), wavelength: 3.0, steepness: 0.3, phase: 0.4 };
     let waves = WaterWaves { trains: vec![train], ..WaterWaves::still() };
-    let foam = WaterFoam { shear_threshold: 0.05, ..default() };
+    let foam = WaterFoam { shear_threshold: 0.05, breaking_threshold: 0.02, ..default() };
     let mut basin = Basin::new(vec2(16.2, 11.2), Some(bed), (flow, waves, foam));
     let mut twin = Twin::new(&basin);
     let cells = basin.cells();

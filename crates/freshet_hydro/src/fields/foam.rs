@@ -18,6 +18,10 @@ pub struct FoamSources {
     pub shear: f32,
     /// Shear below which none is born, 1/s.
     pub shear_threshold: f32,
+    /// Where the current runs together, as in hydraulic jumps and at breaking fronts: 1/s for each 1/s above the threshold.
+    pub breaking: f32,
+    /// Convergence below which none is born, 1/s.
+    pub breaking_threshold: f32,
     /// In fast flow: 1/s for each m/s above the threshold.
     pub speed: f32,
     /// Speed below which none is born, m/s.
@@ -35,6 +39,8 @@ pub struct Stir {
     pub crest: f32,
     /// [`shear`] of the current, 1/s.
     pub shear: f32,
+    /// [`convergence`] of the current, 1/s.
+    pub convergence: f32,
     /// Speed of the current, m/s.
     pub speed: f32,
     /// How much of a body's rim is here, 0…1.
@@ -53,6 +59,7 @@ impl FoamSources {
         let run_up = (stir.crest / self.shore_depth).clamp(0.0, 1.0);
         self.shore * shallow * (CALM_SHORE + (1.0 - CALM_SHORE) * run_up)
             + self.shear * (stir.shear - self.shear_threshold).max(0.0)
+            + self.breaking * (stir.convergence - self.breaking_threshold).max(0.0)
             + self.speed * (stir.speed - self.speed_threshold).max(0.0)
             + self.bodies * stir.rim * stir.slip
     }
@@ -63,6 +70,11 @@ impl FoamSources {
 /// In simple shear it is the gradient of the speed; water that turns as a whole has none.
 pub fn shear(along_x: Vec2, along_z: Vec2) -> f32 {
     Vec2::new(along_x.x - along_z.y, along_z.x + along_x.y).length()
+}
+
+/// Rate at which a current runs together, 1/s, from its derivatives along x and z: `−∇·u`.
+pub fn convergence(along_x: Vec2, along_z: Vec2) -> f32 {
+    -(along_x.x + along_z.y)
 }
 
 /// Density at which birth and decay balance.

@@ -3,6 +3,9 @@ use super::{Forcing, ShallowWater, step, strip::Numbers};
 use crate::waves::GRAVITY;
 use std::mem;
 
+/// Part of a duration that is not worth a step: Δt is rounded to an `f32`.
+const LEAST: f64 = 1e-7;
+
 /// What [`ShallowWater::advance`] did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Advance {
@@ -21,12 +24,12 @@ impl ShallowWater {
         if !(duration.is_finite() && duration > 0.0) {
             return advance;
         }
-        while advance.steps < max_steps && duration - advance.time > duration * 1e-9 {
+        while advance.steps < max_steps && duration - advance.time > duration * LEAST {
             advance.time += self.step(duration - advance.time);
             advance.steps += 1;
         }
         advance.left = (duration - advance.time).max(0.0);
-        if advance.left <= duration * 1e-9 {
+        if advance.left <= duration * LEAST {
             advance.left = 0.0;
         }
         advance

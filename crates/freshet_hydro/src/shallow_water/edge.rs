@@ -47,7 +47,7 @@ pub(super) fn flux(inside: Side, edge: EdgeCell) -> Flux {
         EdgeCell::Wall | EdgeCell::Open => Flux { before: wall(inside.depth, inside.normal), ..Flux::default() },
         EdgeCell::Still(level) => {
             let outside = Side { depth: (level - bed).max(0.0), level: level.max(bed), normal: 0.0, tangential: 0.0 };
-            riemann(inside, outside, f32::NEG_INFINITY)
+            riemann(inside, outside, f32::NEG_INFINITY, 0.0)
         }
         EdgeCell::Level(level) => {
             let celerity = (GRAVITY * inside.depth).sqrt();

@@ -9,7 +9,8 @@ pub enum Edge {
     /// A wall along which water slides.
     #[default]
     Wall,
-    /// Water leaves as it comes, and none enters. A trough that arrives is reflected in part, for that would need water.
+    /// Water leaves as it comes, and none enters: a river that goes on with the same slope. A trough that arrives is reflected,
+    /// for to leave it would need water from outside.
     Open,
     /// Still water at this level, m, goes on for ever: crests and troughs leave, and the level inside tends to it.
     Still(Series),

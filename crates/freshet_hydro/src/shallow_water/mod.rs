@@ -124,7 +124,7 @@ impl ShallowWater {
         Ok(Self {
             size: (columns, rows),
             cell_size: bed.cell_size(),
-            bed: bed.values().to_vec(),
+            bed: bed.values().iter().map(|&elevation| rounded(elevation)).collect(),
             now: State::dry(count),
             next: State::dry(count),
             crests: None,
@@ -156,7 +156,7 @@ impl ShallowWater {
         self.time
     }
 
-    /// Elevation of every cell's bed, m, row by row from the north.
+    /// Elevation of every cell's bed, m, row by row from the north; rounded to 2⁻¹⁶ m.
     pub fn bed(&self) -> &[f32] {
         &self.bed
     }
@@ -237,13 +237,15 @@ impl ShallowWater {
     pub fn set_bed(&mut self, bed: &Grid<f32>) -> Result<(), ShallowWaterError> {
         self.check_size("the bed", bed.size())?;
         check_bed(bed)?;
-        self.bed.copy_from_slice(bed.values());
+        for (own, &elevation) in self.bed.iter_mut().zip(bed.values()) {
+            *own = rounded(elevation);
+        }
         Ok(())
     }
 
     /// Puts a wall on a face between two cells whose `crest` is at this elevation, m: water passes above it.
     /// [`CLOSED`] lets none pass, `f32::NEG_INFINITY` takes the wall away. The face is the one on the `side` of the cell (column,
-    /// row); faces at the rim of the domain are [edges](ShallowWater::set_edge) and stay as they are.
+    /// row). At the rim of the domain there are [edges](ShallowWater::set_edge) instead, unless it wraps around.
     ///
     /// # Errors
     /// [`ShallowWaterError::Number`] if the crest is NaN or the cell is outside.
@@ -262,8 +264,9 @@ impl ShallowWater {
             DomainSide::East => crests.east[index] = crest,
             DomainSide::South => crests.south[index] = crest,
             DomainSide::West if cell.x > 0 => crests.east[index - 1] = crest,
+            DomainSide::West => crests.east[index + self.size.0 - 1] = crest,
             DomainSide::North if cell.y > 0 => crests.south[index - self.size.0] = crest,
-            DomainSide::West | DomainSide::North => {}
+            DomainSide::North => crests.south[index + count - self.size.0] = crest,
         }
         Ok(())
     }
@@ -358,6 +361,12 @@ impl ShallowWater {
 
 fn number(what: &'static str, expected: &'static str, found: f32) -> ShallowWaterError {
     ShallowWaterError::Number { what, expected, found }
+}
+
+/// An elevation in whole parts of 2⁻¹⁶ m (15 µm): up to 256 m the sum of bed and depth is then exact for water at such a level,
+/// which lies still to the last bit.
+fn rounded(elevation: f32) -> f32 {
+    (elevation * 65_536.0).round() / 65_536.0
 }
 
 fn check_bed(bed: &Grid<f32>) -> Result<(), ShallowWaterError> {

@@ -2,7 +2,7 @@
 use super::{
     edge::{self, DomainSide, EdgeCell},
     scheme::Flux,
-    strip::{COLUMNS, Cells, Faces, Fluxes, HALO, Numbers, SPAN, StateRows, Surroundings, Updated, Values},
+    strip::{Beside, COLUMNS, Cells, Faces, Fluxes, HALO, Numbers, SPAN, StateRows, Surroundings, Updated, Values},
 };
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -194,7 +194,7 @@ impl Rows {
                 &self.cells[slot(row, 3)],
                 &self.cells[slot(row + 1, 3)],
                 (1, strip.width + 2 * HALO - 1),
-                0.5 * numbers.ratio,
+                numbers,
             );
             if row < start {
                 continue;
@@ -264,7 +264,36 @@ impl Strip<'_> {
             state.read(self.old, base + column..base + column + 1, k);
             bed[k] = self.around.bed[base + column];
         }
+        self.continue_bed(bed, row, inside);
         cells.load(state, bed, (0, last));
+    }
+
+    /// Beyond its sides the bed goes on with the slope that it has there, so that a river flows out as if it went on; but not
+    /// from a bank, where still water would be drawn up.
+    #[inline(always)]
+    fn continue_bed(&self, bed: &mut Values, row: isize, inside: usize) {
+        let (columns, rows) = self.around.size;
+        let beyond = |cell: usize, next: usize| {
+            let here = self.around.bed[cell];
+            if self.old.depth[next] > 0.0 { here + (here - self.around.bed[next]) } else { here }
+        };
+        if !self.around.periodic.1 && rows > 1 && inside as isize != row {
+            let next = if row < 0 { columns } else { (rows - 2) * columns };
+            let part = HALO..HALO + self.width;
+            for (k, bed) in bed[part].iter_mut().enumerate() {
+                *bed = beyond(inside * columns + self.west + k, next + self.west + k);
+            }
+        }
+        if self.around.periodic.0 || columns < 2 {
+            return;
+        }
+        let (first, last) = (inside * columns, (inside + 1) * columns - 1);
+        if self.west == 0 {
+            bed[HALO - 1] = beyond(first, first + 1);
+        }
+        if self.west + self.width == columns {
+            bed[HALO + self.width] = beyond(last, last - 1);
+        }
     }
 
     /// Fluxes through the eastern faces of the row, from the one west of the strip on.
@@ -273,15 +302,17 @@ impl Strip<'_> {
         let range = (HALO - 1, HALO + self.width);
         let (columns, rows) = self.around.size;
         let row = within(row, rows, self.around.periodic.1);
+        let before = Beside { sides: &faces.east, broken: &faces.broken };
+        let after = Beside { sides: &faces.west, broken: &faces.broken };
         match self.around.crests {
-            None => x.solve(&faces.east, &faces.west, 1, range, None),
+            None => x.solve(before, after, 1, range, None),
             Some(crests) => {
                 let mut own = [f32::NEG_INFINITY; SPAN];
-                for k in range.0..range.1 {
+                for (k, crest) in own.iter_mut().enumerate().take(range.1).skip(range.0) {
                     let column = (self.west + k) as isize - HALO as isize;
-                    own[k] = crests.east[row * columns + within(column, columns, self.around.periodic.0)];
+                    *crest = crests.east[row * columns + within(column, columns, self.around.periodic.0)];
                 }
-                x.solve(&faces.east, &faces.west, 1, range, Some(&own));
+                x.solve(before, after, 1, range, Some(&own));
             }
         }
         if self.around.periodic.0 {
@@ -303,13 +334,15 @@ impl Strip<'_> {
         let range = (HALO, HALO + self.width);
         let (columns, rows) = self.around.size;
         let wraps = self.around.periodic.1;
+        let north = Beside { sides: &before.south, broken: &before.broken };
+        let south = Beside { sides: &after.north, broken: &after.broken };
         match self.around.crests {
-            None => z.solve(&before.south, &after.north, 0, range, None),
+            None => z.solve(north, south, 0, range, None),
             Some(crests) => {
                 let from = within(row - 1, rows, wraps) * columns + self.west;
                 let mut own = [f32::NEG_INFINITY; SPAN];
                 own[HALO..HALO + self.width].copy_from_slice(&crests.south[from..from + self.width]);
-                z.solve(&before.south, &after.north, 0, range, Some(&own));
+                z.solve(north, south, 0, range, Some(&own));
             }
         }
         if wraps {

@@ -1,7 +1,8 @@
 //! Rows of a strip of columns: the scheme, one operation after the other along whole rows, so that the compiler turns each
 //! loop into vector instructions.
 use super::scheme::{
-    DEEPEST, FASTEST, FILM, Flux, Side, half_slope, kept_by_friction, max, per_depth, riemann, sane, wall,
+    DEEPEST, FASTEST, FILM, Flux, Side, brokenness, face_bed, half_slope, kept_by_friction, max, per_depth, riemann,
+    sane, wall,
 };
 use crate::waves::GRAVITY;
 
@@ -67,6 +68,8 @@ pub(super) struct Faces {
     pub push_x: Values,
     /// g h ∂η/∂z Δx, m²/s².
     pub push_z: Values,
+    /// See [`brokenness`].
+    pub broken: Values,
 }
 
 /// Rows of the four conserved numbers of a state.
@@ -128,6 +131,7 @@ impl Default for Faces {
             south: Sides::default(),
             push_x: [0.0; SPAN],
             push_z: [0.0; SPAN],
+            broken: [0.0; SPAN],
         }
     }
 }
@@ -188,14 +192,15 @@ impl Faces {
     /// Limited slopes, carried half a step ahead by the equations in primitive form (Hancock), in the cells `range` of the
     /// row `here` between its neighbours.
     #[inline(always)]
-    pub fn reconstruct(&mut self, north: &Cells, here: &Cells, south: &Cells, range: (usize, usize), half_ratio: f32) {
+    pub fn reconstruct(&mut self, north: &Cells, here: &Cells, south: &Cells, range: (usize, usize), numbers: Numbers) {
         for at in (range.0..range.1).step_by(LANES) {
-            self.reconstruct_block(north, here, south, at, half_ratio);
+            self.reconstruct_block(north, here, south, at, numbers);
         }
     }
 
     #[inline(always)]
-    fn reconstruct_block(&mut self, north: &Cells, here: &Cells, south: &Cells, at: usize, half_ratio: f32) {
+    fn reconstruct_block(&mut self, north: &Cells, here: &Cells, south: &Cells, at: usize, numbers: Numbers) {
+        // Several short loops: of one long one the compiler makes no vector instructions.
         macro_rules! slopes {
             ($field:ident) => {{
                 let (mut x, mut z) = ([0.0; LANES], [0.0; LANES]);
@@ -210,55 +215,106 @@ impl Faces {
                 (c, x, z)
             }};
         }
-        let (h, hxs, hzs) = slopes!(depth);
-        let (l, lxs, lzs) = slopes!(level);
-        let (u, uxs, uzs) = slopes!(u);
-        let (v, vxs, vzs) = slopes!(v);
+        let (h, hx, hz) = slopes!(depth);
+        let (l, lx, lz) = slopes!(level);
+        let (u, ux, uz) = slopes!(u);
+        let (v, vx, vz) = slopes!(v);
+
         // ∂h/∂t = −∇·(h u), ∂u/∂t = −u·∇u − g ∇η over Δt/2, where a slope is half the difference over Δx.
-        let step = 2.0 * half_ratio;
-        let (mut h_t, mut u_t, mut v_t) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let step = numbers.ratio;
+        let (mut risen, mut u_then, mut v_then) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
-            h_t[k] = -step * (u[k] * hxs[k] + v[k] * hzs[k] + h[k] * (uxs[k] + vzs[k]));
+            risen[k] = -step * (u[k] * hx[k] + v[k] * hz[k] + h[k] * (ux[k] + vz[k]));
         }
         for k in 0..LANES {
-            u_t[k] = u[k] - step * (u[k] * uxs[k] + v[k] * uzs[k] + GRAVITY * lxs[k]);
+            u_then[k] = u[k] - step * (u[k] * ux[k] + v[k] * uz[k] + GRAVITY * lx[k]);
         }
         for k in 0..LANES {
-            v_t[k] = v[k] - step * (u[k] * vxs[k] + v[k] * vzs[k] + GRAVITY * lzs[k]);
+            v_then[k] = v[k] - step * (u[k] * vx[k] + v[k] * vz[k] + GRAVITY * lz[k]);
         }
-        let (west, east) = (self.west.block_mut(at), self.east.block_mut(at));
-        let (north, south) = (self.north.block_mut(at), self.south.block_mut(at));
-        let (push_x, push_z) = (block_mut(&mut self.push_x, at), block_mut(&mut self.push_z, at));
-        sides(west, east, push_x, (h, l), (&hxs, &lxs), &h_t, (&u_t, &uxs), (&v_t, &vxs));
-        sides(north, south, push_z, (h, l), (&hzs, &lzs), &h_t, (&v_t, &vzs), (&u_t, &uzs));
+        if numbers.drag > 0.0 {
+            for k in 0..LANES {
+                let speed = (u_then[k] * u_then[k] + v_then[k] * v_then[k]).sqrt();
+                let kept = kept_by_friction(h[k], h[k] * speed, 0.5 * numbers.dt, numbers.drag);
+                u_then[k] *= kept;
+                v_then[k] *= kept;
+            }
+        }
+        let (u_w, u_e) = (block(&here.u, at - 1), block(&here.u, at + 1));
+        let (v_n, v_s) = (block(&north.v, at), block(&south.v, at));
+        let broken = block_mut(&mut self.broken, at);
+        for k in 0..LANES {
+            broken[k] = brokenness(h[k], (u_w[k] - u_e[k]) + (v_n[k] - v_s[k]));
+        }
+        let now = Now { depth: h, level: l, risen: &risen };
+        let bed = |cells: &Cells, at: usize| -> Block {
+            let (level, depth) = (block(&cells.level, at), block(&cells.depth, at));
+            core::array::from_fn(|k| level[k] - depth[k])
+        };
+        let (before, after) = (self.west.block_mut(at), self.east.block_mut(at));
+        let beds = (&bed(here, at - 1), &bed(here, at + 1));
+        show_sides(
+            before,
+            after,
+            block_mut(&mut self.push_x, at),
+            &now,
+            (&hx, &lx),
+            (&u_then, &ux),
+            (&v_then, &vx),
+            beds,
+        );
+        let (before, after) = (self.north.block_mut(at), self.south.block_mut(at));
+        let beds = (&bed(north, at), &bed(south, at));
+        show_sides(
+            before,
+            after,
+            block_mut(&mut self.push_z, at),
+            &now,
+            (&hz, &lz),
+            (&v_then, &vz),
+            (&u_then, &uz),
+            beds,
+        );
     }
 }
 
 type SideBlocks<'a> = (&'a mut Block, &'a mut Block, &'a mut Block, &'a mut Block);
 
+/// Depth and level of a block of cells, and how far they rise in half a step.
+struct Now<'a> {
+    depth: &'a Block,
+    level: &'a Block,
+    risen: &'a Block,
+}
+
+/// What cells show at two opposite sides, from their slopes (of depth and level) and their velocities along and across the
+/// normal with their slopes; `beds` are the elevations of the two neighbours.
 #[inline(always)]
-fn sides(
+fn show_sides(
     before: SideBlocks,
     after: SideBlocks,
     push: &mut Block,
-    (h, l): (&Block, &Block),
+    now: &Now,
     (hs, ls): (&Block, &Block),
-    h_t: &Block,
     (n, ns): (&Block, &Block),
     (t, ts): (&Block, &Block),
+    beds: (&Block, &Block),
 ) {
+    let (h, l) = (now.depth, now.level);
     for k in 0..LANES {
+        let bed = l[k] - h[k];
+        let rises = max((beds.0[k] - bed).abs(), (beds.1[k] - bed).abs());
+        let (shown_b, lift_b) = face_bed((l[k] - ls[k]) - (h[k] - hs[k]), bed, beds.0[k], h[k] < rises);
+        let (shown_a, lift_a) = face_bed((l[k] + ls[k]) - (h[k] + hs[k]), bed, beds.1[k], h[k] < rises);
+        let (h1, l1) = (h[k] + now.risen[k], l[k] + now.risen[k]);
         // The bed of a face stays where it is, also where the water would fall below it.
-        let bed_w = (l[k] - ls[k]) - (h[k] - hs[k]);
-        let bed_e = (l[k] + ls[k]) - (h[k] + hs[k]);
-        let (h1, l1) = (h[k] + h_t[k], l[k] + h_t[k]);
-        let (depth_w, level_w) = (max(h1 - hs[k], 0.0), max(l1 - ls[k], bed_w));
-        let (depth_e, level_e) = (max(h1 + hs[k], 0.0), max(l1 + ls[k], bed_e));
-        before.0[k] = depth_w;
-        before.1[k] = level_w;
-        after.0[k] = depth_e;
-        after.1[k] = level_e;
-        push[k] = (0.5 * GRAVITY) * (depth_w + depth_e) * (level_e - level_w);
+        let (depth_b, level_b) = (max(h1 - hs[k], 0.0), max((l1 - ls[k]) + lift_b, shown_b));
+        let (depth_a, level_a) = (max(h1 + hs[k], 0.0), max((l1 + ls[k]) + lift_a, shown_a));
+        before.0[k] = depth_b;
+        before.1[k] = level_b;
+        after.0[k] = depth_a;
+        after.1[k] = level_a;
+        push[k] = (0.5 * GRAVITY) * (depth_b + depth_a) * (level_a - level_b);
     }
     for k in 0..LANES {
         before.2[k] = n[k] - ns[k];
@@ -268,27 +324,33 @@ fn sides(
     }
 }
 
+/// Sides and brokenness of the cells before or after faces.
+#[derive(Clone, Copy)]
+pub(super) struct Beside<'a> {
+    pub sides: &'a Sides,
+    pub broken: &'a Values,
+}
+
 impl Fluxes {
-    /// Fluxes between the sides `before[k]` and `after[k + shift]` of the faces `k` of `range`, over `crests` if there are any.
+    /// Fluxes through the faces `k` of `range` between the cells `k` before and `k + shift` after them, over `crests` if there are
+    /// any.
     #[inline(always)]
     pub fn solve(
         &mut self,
-        before: &Sides,
-        after: &Sides,
+        before: Beside,
+        after: Beside,
         shift: usize,
         range: (usize, usize),
         crests: Option<&Values>,
     ) {
-        let (a, b) = range;
         match crests {
             None => self.solve_over(before, after, shift, range, |_| f32::NEG_INFINITY),
             Some(crests) => {
                 self.solve_over(before, after, shift, range, |k| crests[k]);
-                for k in a..b {
-                    if crests[k] == f32::INFINITY {
-                        self.before[k] += wall(before.depth[k], before.normal[k]);
-                        self.after[k] += wall(after.depth[k + shift], -after.normal[k + shift]);
-                    }
+                let (before, after) = (before.sides, after.sides);
+                for k in (range.0..range.1).filter(|&k| crests[k] == f32::INFINITY) {
+                    self.before[k] += wall(before.depth[k], before.normal[k]);
+                    self.after[k] += wall(after.depth[k + shift], -after.normal[k + shift]);
                 }
             }
         }
@@ -297,20 +359,21 @@ impl Fluxes {
     #[inline(always)]
     fn solve_over(
         &mut self,
-        before: &Sides,
-        after: &Sides,
+        before: Beside,
+        after: Beside,
         shift: usize,
         range: (usize, usize),
         crest: impl Fn(usize) -> f32,
     ) {
         for at in (range.0..range.1).step_by(LANES) {
-            let (l, r) = (before.block(at), after.block(at + shift));
+            let (l, r) = (before.sides.block(at), after.sides.block(at + shift));
+            let broken = (block(before.broken, at), block(after.broken, at + shift));
             let (mass, first) = (block_mut(&mut self.mass, at), block_mut(&mut self.before, at));
             let (second, along) = (block_mut(&mut self.after, at), block_mut(&mut self.tangential, at));
             for k in 0..LANES {
                 let left = Side { depth: l.0[k], level: l.1[k], normal: l.2[k], tangential: l.3[k] };
                 let right = Side { depth: r.0[k], level: r.1[k], normal: r.2[k], tangential: r.3[k] };
-                let flux = riemann(left, right, crest(at + k));
+                let flux = riemann(left, right, crest(at + k), max(broken.0[k], broken.1[k]));
                 mass[k] = flux.mass;
                 first[k] = flux.before;
                 second[k] = flux.after;

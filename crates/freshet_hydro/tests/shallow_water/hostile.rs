@@ -126,7 +126,6 @@ fn a_budget_of_steps_is_kept() {
 
 /// An `advance` that fits into one step takes one step.
 #[test]
-#[ignore = "a step is rounded to f32, and what is left of 0.01 s then, 2e-10 s, takes a step of its own"]
 fn a_short_advance_is_one_step() {
     let mut water = flat(8, 8);
     water.set_water(|at, _| still(1.0 + 0.01 * f64::from(at.x))).expect("a sane depth");

@@ -2,7 +2,7 @@
 // `freshet_hydro::shallow_water`.
 #import freshet::simulation::shallow_water::bindings::{numbers, parity, clock, edges, leaving, Leaving, Edge, within, WALL, OPEN, STILL, LEVEL, DISCHARGE}
 #import freshet::simulation::shallow_water::cells::{Around, primitive, flux_x, flux_z, update}
-#import freshet::simulation::shallow_water::scheme::{GRAVITY, NO_CREST, Faces, Flux, Side, added_to, reconstruct, riemann, wall}
+#import freshet::simulation::shallow_water::scheme::{GRAVITY, NO_CREST, Faces, Flux, Side, added_to, beyond, reconstruct, riemann, wall}
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -41,14 +41,28 @@ fn index(cell: vec2<i32>) -> i32 {
     return within(cell.y, size.y, numbers.periodic.y) * size.x + within(cell.x, size.x, numbers.periodic.x);
 }
 
-fn faces_of(cell: vec2<i32>, ratio: f32) -> Faces {
+// The cell beside `cell` in the direction `to`, or what stands for it behind an edge.
+fn beside(cell: vec2<i32>, to: vec2<i32>) -> vec4<f32> {
+    let size = numbers.size;
+    let there = cell + to;
+    let wraps = select(numbers.periodic.y, numbers.periodic.x, to.x != 0) != 0u;
+    let count = select(size.y, size.x, to.x != 0);
+    let is_inside = all(there >= vec2(0)) && all(there < size);
+    if is_inside || wraps || count < 2 {
+        return primitive(index(there));
+    }
+    return beyond(primitive(index(cell)), primitive(index(cell - to)));
+}
+
+fn faces_of(cell: vec2<i32>, dt: f32) -> Faces {
     return reconstruct(
         primitive(index(cell)),
-        primitive(index(cell + vec2(-1, 0))),
-        primitive(index(cell + vec2(1, 0))),
-        primitive(index(cell + vec2(0, -1))),
-        primitive(index(cell + vec2(0, 1))),
-        ratio,
+        beside(cell, vec2(-1, 0)),
+        beside(cell, vec2(1, 0)),
+        beside(cell, vec2(0, -1)),
+        beside(cell, vec2(0, 1)),
+        dt / numbers.cell,
+        vec2(dt, numbers.drag),
     );
 }
 
@@ -61,7 +75,6 @@ fn side_of(at: i32) -> u32 {
 fn take_step(at: i32) {
     let size = numbers.size;
     let dt = clock.dt;
-    let ratio = dt / numbers.cell;
     let cell = cell_at(at);
     let side = side_of(at);
     let open_x = numbers.periodic.x == 0u;
@@ -70,33 +83,37 @@ fn take_step(at: i32) {
         return;
     }
     let i = index(cell);
-    let faces = faces_of(cell, ratio);
+    let faces = faces_of(cell, dt);
     var around: Around;
     if open_x && cell.x == 0 {
         let out = edge_flux(Side(faces.west.x, faces.west.y, -faces.west.z, faces.west.w), edges[cell.y]);
         around.west = Flux(-out.mass, 0.0, out.before, -out.tangential);
         keep(side == 0u, at, out, dt);
     } else {
-        around.west = flux_x(faces_of(cell + vec2(-1, 0), ratio).east, faces.west, index(cell + vec2(-1, 0)));
+        let there = faces_of(cell + vec2(-1, 0), dt);
+        around.west = flux_x(there.east, faces.west, max(there.broken, faces.broken), index(cell + vec2(-1, 0)));
     }
     if open_x && cell.x == size.x - 1 {
         around.east = edge_flux(Side(faces.east.x, faces.east.y, faces.east.z, faces.east.w), edges[offsets().y + cell.y]);
         keep(side == 1u, at, around.east, dt);
     } else {
-        around.east = flux_x(faces.east, faces_of(cell + vec2(1, 0), ratio).west, i);
+        let there = faces_of(cell + vec2(1, 0), dt);
+        around.east = flux_x(faces.east, there.west, max(faces.broken, there.broken), i);
     }
     if open_z && cell.y == 0 {
         let out = edge_flux(Side(faces.north.x, faces.north.y, -faces.north.w, faces.north.z), edges[offsets().z + cell.x]);
         around.north = Flux(-out.mass, 0.0, out.before, -out.tangential);
         keep(side == 2u, at, out, dt);
     } else {
-        around.north = flux_z(faces_of(cell + vec2(0, -1), ratio).south, faces.north, index(cell + vec2(0, -1)));
+        let there = faces_of(cell + vec2(0, -1), dt);
+        around.north = flux_z(there.south, faces.north, max(there.broken, faces.broken), index(cell + vec2(0, -1)));
     }
     if open_z && cell.y == size.y - 1 {
         around.south = edge_flux(Side(faces.south.x, faces.south.y, faces.south.w, faces.south.z), edges[offsets().w + cell.x]);
         keep(side == 3u, at, around.south, dt);
     } else {
-        around.south = flux_z(faces.south, faces_of(cell + vec2(0, 1), ratio).north, i);
+        let there = faces_of(cell + vec2(0, 1), dt);
+        around.south = flux_z(faces.south, there.north, max(faces.broken, there.broken), i);
     }
     // A corner belongs to its western or eastern side, and a cell at both to the western one.
     let is_last = side == 1u && cell.x == 0 || side >= 2u && open_x && (cell.x == 0 || cell.x == size.x - 1);
@@ -125,7 +142,7 @@ fn edge_flux(at: Side, edge: Edge) -> Flux {
     } else if kind == WALL || kind == OPEN {
         return Flux(0.0, wall(at.depth, at.normal), 0.0, 0.0);
     } else if kind == STILL {
-        return riemann(at, Side(max(value - ground, 0.0), max(value, ground), 0.0, 0.0), NO_CREST);
+        return riemann(at, Side(max(value - ground, 0.0), max(value, ground), 0.0, 0.0), NO_CREST, 0.0);
     } else if kind == LEVEL {
         if at.normal >= celerity && at.depth > 0.0 {
             // Faster than its waves: no news of the outside can enter.

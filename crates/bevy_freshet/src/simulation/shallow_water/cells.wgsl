@@ -12,25 +12,25 @@ fn primitive(i: i32) -> vec4<f32> {
 }
 
 // The flux through the eastern face of cell `i`.
-fn flux_x(before: vec4<f32>, after: vec4<f32>, i: i32) -> Flux {
+fn flux_x(before: vec4<f32>, after: vec4<f32>, broken: f32, i: i32) -> Flux {
 #ifdef WALLS
-    return over_crest(along_x(before), along_x(after), extras[i].x);
+    return over_crest(along_x(before), along_x(after), extras[i].x, broken);
 #else
-    return riemann(along_x(before), along_x(after), NO_CREST);
+    return riemann(along_x(before), along_x(after), NO_CREST, broken);
 #endif
 }
 
 // The flux through the southern face of cell `i`.
-fn flux_z(before: vec4<f32>, after: vec4<f32>, i: i32) -> Flux {
+fn flux_z(before: vec4<f32>, after: vec4<f32>, broken: f32, i: i32) -> Flux {
 #ifdef WALLS
-    return over_crest(along_z(before), along_z(after), extras[i].y);
+    return over_crest(along_z(before), along_z(after), extras[i].y, broken);
 #else
-    return riemann(along_z(before), along_z(after), NO_CREST);
+    return riemann(along_z(before), along_z(after), NO_CREST, broken);
 #endif
 }
 
-fn over_crest(before: Side, after: Side, crest: f32) -> Flux {
-    var flux = riemann(before, after, crest);
+fn over_crest(before: Side, after: Side, crest: f32, broken: f32) -> Flux {
+    var flux = riemann(before, after, crest, broken);
     let is_closed = crest >= CLOSED;
     flux.before += select(0.0, wall(before.depth, before.normal), is_closed);
     flux.after += select(0.0, wall(after.depth, -after.normal), is_closed);

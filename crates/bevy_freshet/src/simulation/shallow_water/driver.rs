@@ -92,6 +92,8 @@ struct OnGpu {
     returned: f64,
     owed: f64,
     late: u32,
+    /// Point sources of the ground that it has, m/s.
+    sources: Vec<f32>,
 }
 
 /// A water and all that its simulation is made by.
@@ -427,9 +429,13 @@ impl Simulation {
                 fastest: self.water.fastest_signal(),
             })
         });
+        if gpu.sources != sources {
+            gpu.ground += 1;
+            gpu.sources.clone_from(&sources);
+        }
         let has_ground = gpu.held.ground.load(Ordering::Relaxed) == gpu.ground;
         let version = gpu.ground;
-        let ground = (!holds || !has_ground || has_sources).then(|| {
+        let ground = (!holds || !has_ground).then(|| {
             Arc::new(Ground {
                 version,
                 bed: self.water.bed().to_vec(),
@@ -450,7 +456,7 @@ impl Simulation {
 }
 
 /// Crests and sources of every cell; nothing if there are none.
-fn extras(water: &ShallowWater, sources: &[f32], any: bool) -> Vec<Vec4> {
+pub(super) fn extras(water: &ShallowWater, sources: &[f32], any: bool) -> Vec<Vec4> {
     if !any {
         return Vec::new();
     }
@@ -464,7 +470,7 @@ fn extras(water: &ShallowWater, sources: &[f32], any: bool) -> Vec<Vec4> {
 }
 
 /// The book of a state that came back.
-fn balance(before: &Balance, returned: &Returned, water: &ShallowWater) -> Balance {
+pub(super) fn balance(before: &Balance, returned: &Returned, water: &ShallowWater) -> Balance {
     let cell = f64::from(water.cell_size());
     let count = water.bed().len() as f64;
     let rain = returned.rained * count * cell * cell;

@@ -28,12 +28,22 @@ fn per_depth(depth: f32) -> f32 {
 
 // Half the differences across a cell, limited so that neither face overshoots the neighbour there.
 fn half_slope(before: vec4<f32>, here: vec4<f32>, after: vec4<f32>) -> vec4<f32> {
-    let a = here - before;
-    let b = after - here;
-    let central = 0.25 * (a + b);
+    let to_here = here - before;
+    let from_here = after - here;
+    let central = 0.25 * (to_here + from_here);
+    let a = 0.75 * to_here;
+    let b = 0.75 * from_here;
     let rising = max(min(min(a, b), central), vec4(0.0));
     let falling = min(max(max(a, b), central), vec4(0.0));
     return rising + falling;
+}
+
+// The cell behind an edge as it stands for what is there: that at the edge, on a bed that goes on with its slope; but not from a
+// bank, where still water would be drawn up.
+fn beyond(here: vec4<f32>, next: vec4<f32>) -> vec4<f32> {
+    let bed = here.y - here.x;
+    let goes_on = bed - (next.y - next.x);
+    return vec4(here.x, here.y + select(0.0, goes_on, next.x > 0.0), here.zw);
 }
 
 // What a cell shows at its four sides half a step later: depth, level and the velocity along x and z.
@@ -42,25 +52,50 @@ struct Faces {
     east: vec4<f32>,
     north: vec4<f32>,
     south: vec4<f32>,
+    broken: f32,        // 0…1: 1 in jumps and bores
 }
 
-// The cell `c` among its neighbours, each depth, level and velocity; `ratio` is Δt/Δx.
-fn reconstruct(c: vec4<f32>, w: vec4<f32>, e: vec4<f32>, n: vec4<f32>, s: vec4<f32>, ratio: f32) -> Faces {
+// The cell `c` among its neighbours, each depth, level and velocity; `ratio` is Δt/Δx, and `friction` Δt and g n².
+fn reconstruct(c: vec4<f32>, w: vec4<f32>, e: vec4<f32>, n: vec4<f32>, s: vec4<f32>, ratio: f32, friction: vec2<f32>) -> Faces {
     let x = half_slope(w, c, e);
     let z = half_slope(n, c, s);
     // ∂h/∂t = −∇·(h u), ∂u/∂t = −u·∇u − g ∇η over Δt/2, where a slope is half the difference over Δx.
     let risen = -ratio * (c.z * x.x + c.w * z.x + c.x * (x.z + z.w));
     let u = c.z - ratio * (c.z * x.z + c.w * z.z + GRAVITY * x.y);
     let v = c.w - ratio * (c.z * x.w + c.w * z.w + GRAVITY * z.y);
-    let later = vec4(c.x + risen, c.y + risen, u, v);
-    return Faces(side(c, later, -x), side(c, later, x), side(c, later, -z), side(c, later, z));
+    let kept = kept_by_friction(c.x, c.x * sqrt(u * u + v * v), 0.5 * friction.x, friction.y);
+    let later = vec4(c.x + risen, c.y + risen, u * kept, v * kept);
+    let bed = c.y - c.x;
+    let beds = vec4(w.y - w.x, e.y - e.x, n.y - n.x, s.y - s.x);
+    let rises = abs(beds - bed);
+    let shallow_x = c.x < max(rises.x, rises.y);
+    let shallow_z = c.x < max(rises.z, rises.w);
+    return Faces(
+        side(c, later, -x, beds.x, shallow_x),
+        side(c, later, x, beds.y, shallow_x),
+        side(c, later, -z, beds.z, shallow_z),
+        side(c, later, z, beds.w, shallow_z),
+        brokenness(c.x, (w.z - e.z) + (n.w - s.w)),
+    );
 }
 
-// The bed of a face stays where it is, also where the water would fall below it.
-fn side(now: vec4<f32>, later: vec4<f32>, slope: vec4<f32>) -> vec4<f32> {
-    let bed = (now.y + slope.y) - (now.x + slope.x);
+// How broken the water is, where `closing` is the speed at which the neighbours of a cell approach each other.
+fn brokenness(depth: f32, closing: f32) -> f32 {
+    let approach = max(closing, 0.0);
+    let share = approach * approach / (GRAVITY * max(depth, 1e-3));
+    return max(min(20.0 * (share - 0.005), 1.0), 0.0);
+}
+
+// What a cell shows towards a neighbour whose bed is at `next`. Where it is shallower than the bed's steps the face's bed is kept
+// between those of both cells. The bed of a face stays where it is, also where the water would fall below it.
+fn side(now: vec4<f32>, later: vec4<f32>, slope: vec4<f32>, next: f32, is_shallow: bool) -> vec4<f32> {
+    let bed = now.y - now.x;
+    let found = (now.y + slope.y) - (now.x + slope.x);
+    let kept = max(min(found, max(bed, next)), min(bed, next));
+    let shown = select(found, kept, is_shallow);
+    let lift = select(0.0, kept - found, is_shallow);
     let moved = later + slope;
-    return vec4(max(moved.x, 0.0), max(moved.y, bed), moved.zw);
+    return vec4(max(moved.x, 0.0), max(moved.y + lift, shown), moved.zw);
 }
 
 // What passes a face along its normal. The pressure ½ g h² of each side is left out of `before` and `after`.
@@ -87,8 +122,9 @@ fn along_z(at: vec4<f32>) -> Side {
     return Side(at.x, at.y, at.w, at.z);
 }
 
-// Hydrostatic reconstruction (Audusse et al. 2004) with HLLC (Toro 2001), exact within critical fans.
-fn riemann(l: Side, r: Side, crest: f32) -> Flux {
+// Hydrostatic reconstruction (Audusse et al. 2004) with HLLC (Toro 2001), exact within critical fans. Where the water is
+// broken shear is smoothed as by HLL, lest jumps grow fingers.
+fn riemann(l: Side, r: Side, crest: f32, broken: f32) -> Flux {
     let sill = max(max(l.level - l.depth, r.level - r.depth), crest);
     let hl = max(l.level - sill, 0.0);
     let hr = max(r.level - sill, 0.0);
@@ -127,7 +163,9 @@ fn riemann(l: Side, r: Side, crest: f32) -> Flux {
     let given = select(before, fan_before, is_fan);
 
     let carried = select(r.tangential, l.tangential, passed > 0.0);
-    return Flux(passed, given, given - pressure, passed * carried);
+    let shared = hl * hr * 2.0 / max(hl + hr, 1e-20);
+    let smoothed = broken * (both * per_width) * shared * (r.tangential - l.tangential);
+    return Flux(passed, given, given - pressure, passed * carried + smoothed);
 }
 
 // Momentum that a wall takes from water that comes at it with speed `towards`, beyond the pressure of its depth.

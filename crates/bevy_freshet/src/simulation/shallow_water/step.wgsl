@@ -5,7 +5,7 @@
 // `freshet_hydro::shallow_water`.
 #import freshet::simulation::shallow_water::bindings::{numbers, parity, clock, state, state_out, within, choose_dt}
 #import freshet::simulation::shallow_water::cells::{Around, primitive, flux_x, flux_z, update}
-#import freshet::simulation::shallow_water::scheme::{Faces, added_to, reconstruct}
+#import freshet::simulation::shallow_water::scheme::{Faces, added_to, beyond, reconstruct}
 
 const COLUMNS: i32 = 4;
 const ROWS: i32 = #{ROWS};
@@ -43,7 +43,7 @@ struct Row {
 
 fn load_row(first: vec4<i32>, last: vec4<i32>, row: i32) -> Row {
     let base = within(row, numbers.size.y, numbers.periodic.y) * numbers.size.x;
-    return Row(
+    var cells = Row(
         primitive(base + first.x),
         primitive(base + first.y),
         primitive(base + first.z),
@@ -52,6 +52,29 @@ fn load_row(first: vec4<i32>, last: vec4<i32>, row: i32) -> Row {
         primitive(base + last.y),
         primitive(base + last.z),
         primitive(base + last.w),
+    );
+    // The cell behind the western or eastern edge, wherever it is among them.
+    let own = first.z;
+    let columns = select(numbers.size.x, -1, numbers.periodic.x != 0u || numbers.size.x < 2);
+    cells.b = select(cells.b, beyond(cells.c, cells.d), columns > 0 && own == 0);
+    cells.d = select(cells.d, beyond(cells.c, cells.b), own + 1 == columns);
+    cells.e = select(cells.e, beyond(cells.d, cells.c), own + 2 == columns);
+    cells.f = select(cells.f, beyond(cells.e, cells.d), own + 3 == columns);
+    cells.g = select(cells.g, beyond(cells.f, cells.e), own + 4 == columns);
+    return cells;
+}
+
+// The row behind the northern or southern edge.
+fn row_beyond(here: Row, next: Row) -> Row {
+    return Row(
+        here.a,
+        beyond(here.b, next.b),
+        beyond(here.c, next.c),
+        beyond(here.d, next.d),
+        beyond(here.e, next.e),
+        beyond(here.f, next.f),
+        beyond(here.g, next.g),
+        here.h,
     );
 }
 
@@ -91,51 +114,60 @@ fn column_within(column: i32) -> i32 {
 fn go_down(column: i32, first: i32, last: i32, dt: f32) {
     let size = numbers.size;
     let ratio = dt / numbers.cell;
+    let friction = vec2(dt, numbers.drag);
     let left = vec4(column_within(column - 2), column_within(column - 1), column, column_within(column + 1));
     let right = vec4(column_within(column + 2), column_within(column + 3), column_within(column + 4), column_within(column + 5));
     var north = load_row(left, right, first - 2);
     var here = load_row(left, right, first - 1);
     var south = load_row(left, right, first);
-    var c = reconstruct(here.c, here.b, here.d, north.c, south.c, ratio);
-    var d = reconstruct(here.d, here.c, here.e, north.d, south.d, ratio);
-    var e = reconstruct(here.e, here.d, here.f, north.e, south.e, ratio);
-    var f = reconstruct(here.f, here.e, here.g, north.f, south.f, ratio);
+    var c = reconstruct(here.c, here.b, here.d, north.c, south.c, ratio, friction);
+    var d = reconstruct(here.d, here.c, here.e, north.d, south.d, ratio, friction);
+    var e = reconstruct(here.e, here.d, here.f, north.e, south.e, ratio, friction);
+    var f = reconstruct(here.f, here.e, here.g, north.f, south.f, ratio, friction);
     var around_c: Around;
     var around_d: Around;
     var around_e: Around;
     var around_f: Around;
     var fastest = 0.0;
+    // Whether there is a northern and a southern edge with a slope.
+    let ends = numbers.periodic.y == 0u && size.y > 1;
     for (var row = first; row <= last; row++) {
         north = here;
         here = south;
         south = load_row(left, right, row + 1);
+        if row == 0 && ends {
+            north = row_beyond(here, south);
+        }
+        if row == size.y - 1 && ends {
+            south = row_beyond(here, north);
+        }
         let above_c = c;
         let above_d = d;
         let above_e = e;
         let above_f = f;
-        c = reconstruct(here.c, here.b, here.d, north.c, south.c, ratio);
-        d = reconstruct(here.d, here.c, here.e, north.d, south.d, ratio);
-        e = reconstruct(here.e, here.d, here.f, north.e, south.e, ratio);
-        f = reconstruct(here.f, here.e, here.g, north.f, south.f, ratio);
+        c = reconstruct(here.c, here.b, here.d, north.c, south.c, ratio, friction);
+        d = reconstruct(here.d, here.c, here.e, north.d, south.d, ratio, friction);
+        e = reconstruct(here.e, here.d, here.f, north.e, south.e, ratio, friction);
+        f = reconstruct(here.f, here.e, here.g, north.f, south.f, ratio, friction);
         let over = within(row - 1, size.y, numbers.periodic.y) * size.x;
-        around_c.south = flux_z(above_c.south, c.north, over + left.z);
-        around_d.south = flux_z(above_d.south, d.north, over + left.w);
-        around_e.south = flux_z(above_e.south, e.north, over + right.x);
-        around_f.south = flux_z(above_f.south, f.north, over + right.y);
+        around_c.south = flux_z(above_c.south, c.north, max(above_c.broken, c.broken), over + left.z);
+        around_d.south = flux_z(above_d.south, d.north, max(above_d.broken, d.broken), over + left.w);
+        around_e.south = flux_z(above_e.south, e.north, max(above_e.broken, e.broken), over + right.x);
+        around_f.south = flux_z(above_f.south, f.north, max(above_f.broken, f.broken), over + right.y);
         if row > first {
             fastest = max(fastest, leave(column, row - 1, above_c, around_c, dt));
             fastest = max(fastest, leave(column + 1, row - 1, above_d, around_d, dt));
             fastest = max(fastest, leave(column + 2, row - 1, above_e, around_e, dt));
             fastest = max(fastest, leave(column + 3, row - 1, above_f, around_f, dt));
         }
-        let b = reconstruct(here.b, here.a, here.c, north.b, south.b, ratio);
-        let g = reconstruct(here.g, here.f, here.h, north.g, south.g, ratio);
+        let b = reconstruct(here.b, here.a, here.c, north.b, south.b, ratio, friction);
+        let g = reconstruct(here.g, here.f, here.h, north.g, south.g, ratio, friction);
         let own = within(row, size.y, numbers.periodic.y) * size.x;
-        let bc = flux_x(b.east, c.west, own + left.y);
-        let cd = flux_x(c.east, d.west, own + left.z);
-        let de = flux_x(d.east, e.west, own + left.w);
-        let ef = flux_x(e.east, f.west, own + right.x);
-        let fg = flux_x(f.east, g.west, own + right.y);
+        let bc = flux_x(b.east, c.west, max(b.broken, c.broken), own + left.y);
+        let cd = flux_x(c.east, d.west, max(c.broken, d.broken), own + left.z);
+        let de = flux_x(d.east, e.west, max(d.broken, e.broken), own + left.w);
+        let ef = flux_x(e.east, f.west, max(e.broken, f.broken), own + right.x);
+        let fg = flux_x(f.east, g.west, max(f.broken, g.broken), own + right.y);
         around_c = Around(bc, cd, around_c.south, around_c.south);
         around_d = Around(cd, de, around_d.south, around_d.south);
         around_e = Around(de, ef, around_e.south, around_e.south);

@@ -1,6 +1,6 @@
 //! Water that swings in a bowl.
+use super::super::analytic::Bowl;
 use super::{Run, land, place};
-use crate::analytic::Bowl;
 use glam::Vec2;
 
 /// Thacker's planar solution on 200² cells for three periods.

@@ -1,6 +1,6 @@
 //! Dams that break.
+use super::super::analytic::{dam_break, shock_speed};
 use super::{Run, land, place, still};
-use crate::analytic::{dam_break, shock_speed};
 
 /// A channel of 1 m in 400 cells, the dam in the middle, 1 m of water left of it, t = 0.06 s: the mean error of depth
 /// stays below that of ANUGA's scheme DE1 with four triangles per cell (0.085 %).

@@ -89,19 +89,19 @@ pub fn a_weir_holds_what_is_below_its_crest(run: Run) {
     }
 }
 
-/// Over a thin weir runs about what critical flow carries, q = (2/3)^(3/2) √g H^(3/2) for the head H above the crest;
-/// the hydrostatic scheme loses some.
+/// Over a thin weir runs between what a broken dam lets pass, 8/27 √g H^(3/2) for the head H above the crest, and a little
+/// more than critical flow carries, (2/3)^(3/2) √g H^(3/2).
 pub fn flow_over_a_weir(run: Run) {
     println!("weir, head (m) | q (m²/s) | q / √(g H³), which is 0.544 for critical flow");
     let found = [0.1, 0.2, 0.5, 1.0].map(|head| flow_over_obstacle(run, head, false));
-    assert!(found.iter().all(|found| (0.35..0.65).contains(found)), "{found:?}");
+    assert!(found.iter().all(|found| (0.29..0.6).contains(found)), "{found:?}");
 }
 
 /// The same over a dike that is one cell wide, with a lower bed behind it.
 pub fn flow_over_a_dike(run: Run) {
     println!("dike of one cell, head (m) | q (m²/s) | q / √(g H³), which is 0.544 for critical flow");
     let found = [0.1, 0.2, 0.5, 1.0].map(|head| flow_over_obstacle(run, head, true));
-    assert!(found.iter().all(|found| (0.35..0.65).contains(found)), "{found:?}");
+    assert!(found.iter().all(|found| (0.29..0.6).contains(found)), "{found:?}");
 }
 
 /// q / √(g H³) of steady flow from water that is kept `head` (m) above an obstacle 1 m high, which is a dike or a thin
