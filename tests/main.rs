@@ -22,6 +22,7 @@ mod reflection;
 mod river;
 mod robustness;
 mod shore;
+mod simulated;
 mod star_filter;
 mod touch;
 mod views;

@@ -36,6 +36,8 @@ pub(crate) struct ResolvedWater {
     pub flow: Option<(Arc<Grid<Vec2>>, f32)>,
     /// The ice, if there is any.
     pub ice: Option<ResolvedIce>,
+    /// How far the ground that simulation takes where there is no bed lies below the still level, m.
+    pub flat_ground: Option<f32>,
     /// The simulated water, if it is simulated, and how old it is, s.
     pub simulated: Option<(Arc<Field>, f32)>,
 }
@@ -68,10 +70,10 @@ impl ResolvedWater {
         self.ground_depth(place) + self.risen(place)
     }
 
-    /// How far the ground at local `place` lies below the still level, m: infinite without a bed, minus infinity where it has
-    /// no data.
+    /// How far the ground at local `place` lies below the still level, m: infinite without a bed if it is not simulated, minus
+    /// infinity where a bed has no data.
     pub fn ground_depth(&self, place: Vec2) -> f32 {
-        let Some(bed) = &self.bed else { return f32::INFINITY };
+        let Some(bed) = &self.bed else { return self.flat_ground.unwrap_or(f32::INFINITY) };
         let elevation = bed.elevations.sample(bed.bed_from_local.transform_point2(place));
         if elevation.is_nan() { f32::NEG_INFINITY } else { self.level - (bed.base + elevation) }
     }
@@ -189,6 +191,7 @@ pub(crate) fn resolve_waters(
         }
         next.bed = bed_below(&next, &beds);
         next.simulated = simulated.and_then(Simulated::field);
+        next.flat_ground = simulated.and_then(Simulated::flat_ground);
         if let Some((ice, mut map)) = ice {
             next.ice = frozen::resolve(entity, ice, &mut map, &next, &mut reported);
         }

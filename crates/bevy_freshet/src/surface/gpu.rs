@@ -96,6 +96,7 @@ pub(crate) struct GpuSurface {
 
     pub simulated_size: Vec2,
     pub simulated_cell: f32,
+    pub flat_depth: f32,
 }
 
 impl GpuSurface {

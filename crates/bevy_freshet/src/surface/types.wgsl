@@ -94,6 +94,7 @@ struct Surface {
 
     simulated_size: vec2<f32>,      // cells of the simulated water
     simulated_cell: f32,            // units: m
+    flat_depth: f32,                // depth of the ground under the still level where there is no bed, units: m
 }
 
 const FLAG_MIRROR: u32 = 1u;

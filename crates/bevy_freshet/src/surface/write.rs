@@ -214,6 +214,7 @@ pub(crate) fn write_ground(
     images: &mut Assets<Image>,
 ) -> (Option<Handle<Image>>, Option<Handle<Image>>) {
     let (mut bed_texture, mut flow_texture) = (None, None);
+    gpu.flat_depth = water.flat_ground.unwrap_or(1e6);
     if let Some(bed) = &water.bed {
         gpu.flags |= GpuSurface::BED;
         gpu.bed_from_local = bed.bed_from_local.matrix2;

@@ -134,8 +134,8 @@ pub(super) fn riemann(l: Side, r: Side, crest: f32, broken: f32) -> Flux {
     let before = if fan_l || fan_r { fan_before } else { before };
 
     let carried = if mass > 0.0 { l.tangential } else { r.tangential };
-    let shared = hl * hr * 2.0 / max(hl + hr, 1e-20);
-    let smoothed = broken * (both * per_width) * shared * (r.tangential - l.tangential);
+    let mean_depth = hl * hr * 2.0 / max(hl + hr, 1e-20);
+    let smoothed = broken * (both * per_width) * mean_depth * (r.tangential - l.tangential);
     Flux { mass, before, after: before - pressure, tangential: mass * carried + smoothed }
 }
 

@@ -21,10 +21,15 @@ pub(super) fn cells_of(half_size: Vec2, cell_size: f32) -> (UVec2, f32) {
     ((extent / cell).round().max(Vec2::ONE).as_uvec2(), cell)
 }
 
+/// Elevation of the ground where there is no bed, m over the still level.
+pub(super) fn usable_ground(settings: &WaterSimulation) -> f32 {
+    if settings.ground.is_finite() { settings.ground.clamp(-1e5, 1e5) } else { WaterSimulation::default().ground }
+}
+
 /// Elevations of the ground over the still level (m), each the mean over its cell.
 pub(super) fn ground_below(water: &ResolvedWater, settings: &WaterSimulation, size: UVec2, cell: f32) -> Grid<f32> {
     let Some(bed) = &water.bed else {
-        let flat = if settings.ground.is_finite() { settings.ground } else { -2.0 };
+        let flat = usable_ground(settings);
         return Grid::from_fn(size, cell, |_| flat).expect("a water has cells");
     };
     let base = bed.base - water.level;

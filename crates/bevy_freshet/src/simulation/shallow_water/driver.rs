@@ -1,7 +1,7 @@
 //! Keeps the simulation of every water: makes it, changes it, advances it, and says what it has come to.
 use super::{
     GpuEdge, GpuShallow, Ground, Held, Returned, ShallowFrame, ShallowWork, StartState,
-    domain::{cells_of, ground_below, set_edges, set_walls},
+    domain::{cells_of, ground_below, set_edges, set_walls, usable_ground},
     frame::pictures,
 };
 use crate::{
@@ -43,6 +43,8 @@ pub(crate) struct Simulated {
 struct Simulation {
     water: ShallowWater,
     made_of: MadeOf,
+    /// Elevation of the ground where there is no bed, m.
+    flat: f32,
     ground: Option<GroundKey>,
     applied: Option<Applied>,
     field: Arc<Field>,
@@ -110,6 +112,11 @@ pub(super) struct Waters {
 }
 
 impl Simulated {
+    /// How far the ground lies below the still level where there is no bed, m.
+    pub fn flat_ground(&self) -> Option<f32> {
+        self.simulation.as_ref().map(|simulation| -simulation.flat)
+    }
+
     /// The newest state, and its age in seconds.
     pub fn field(&self) -> Option<(Arc<Field>, f32)> {
         let simulation = self.simulation.as_ref()?;
@@ -289,7 +296,7 @@ impl GroundKey {
     fn new(water: &ResolvedWater, settings: &WaterSimulation) -> Self {
         let key =
             |bed: &ResolvedBed| (Arc::as_ptr(&bed.elevations).addr(), bed.bed_from_local.to_cols_array(), bed.base);
-        Self { bed: water.bed.as_ref().map(key), level: water.level, flat: settings.ground }
+        Self { bed: water.bed.as_ref().map(key), level: water.level, flat: usable_ground(settings) }
     }
 }
 
@@ -308,7 +315,7 @@ impl Simulation {
             })?,
         }
         let field = Arc::new(Field::new(&water, None, 0.0));
-        Ok(Self { water, made_of, ground: None, applied: None, field, on_gpu: None })
+        Ok(Self { water, made_of, flat: 0.0, ground: None, applied: None, field, on_gpu: None })
     }
 
     /// The field of the newest state, `elapsed` seconds after the one before.
@@ -318,6 +325,7 @@ impl Simulation {
 
     fn follow_ground(&mut self, resolved: &ResolvedWater, settings: &WaterSimulation) {
         let key = GroundKey::new(resolved, settings);
+        self.flat = usable_ground(settings);
         if self.ground.as_ref() == Some(&key) {
             return;
         }

@@ -44,12 +44,10 @@ pub(crate) struct ShallowWaterPlugin;
 
 impl Plugin for ShallowWaterPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(FixedFirst, driver::simulate_on_cpu.before(WaterSystems::Resolve)).add_systems(
-            PostUpdate,
-            driver::simulate_on_gpu.after(TransformSystems::Propagate).before(WaterSystems::Resolve),
-        );
+        app.add_systems(FixedFirst, driver::simulate_on_cpu.before(WaterSystems::Resolve));
         if app.get_sub_app(RenderApp).is_some() {
-            app.add_plugins(StagesPlugin);
+            let simulate = driver::simulate_on_gpu.after(TransformSystems::Propagate).before(WaterSystems::Resolve);
+            app.add_plugins(StagesPlugin).add_systems(PostUpdate, simulate);
         }
     }
 }

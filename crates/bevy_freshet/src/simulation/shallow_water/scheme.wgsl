@@ -163,8 +163,8 @@ fn riemann(l: Side, r: Side, crest: f32, broken: f32) -> Flux {
     let given = select(before, fan_before, is_fan);
 
     let carried = select(r.tangential, l.tangential, passed > 0.0);
-    let shared = hl * hr * 2.0 / max(hl + hr, 1e-20);
-    let smoothed = broken * (both * per_width) * shared * (r.tangential - l.tangential);
+    let mean_depth = hl * hr * 2.0 / max(hl + hr, 1e-20);
+    let smoothed = broken * (both * per_width) * mean_depth * (r.tangential - l.tangential);
     return Flux(passed, given, given - pressure, passed * carried + smoothed);
 }
 

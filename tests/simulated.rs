@@ -1,0 +1,163 @@
+//! Water that is simulated: felt and drawn as it is simulated, on either backend.
+use crate::{
+    said::complaints,
+    stage::{Stage, still_water},
+    waves::{LEVEL, heights},
+};
+use bevy::{ecs::system::RunSystemOnce, prelude::*, time::TimeUpdateStrategy, transform::TransformPlugin};
+use bevy_freshet::prelude::*;
+use std::time::Duration;
+
+/// A server: no renderer and no window; a frame is a fixed step of 1/60 s.
+fn server() -> App {
+    let step = Duration::from_secs_f64(1.0 / 60.0);
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default()))
+        .init_asset::<Mesh>()
+        .insert_resource(Time::<Fixed>::from_duration(step))
+        .insert_resource(TimeUpdateStrategy::ManualDuration(step));
+    #[cfg(feature = "rapier")]
+    app.insert_resource(bevy_rapier3d::prelude::TimestepMode::Fixed { dt: 1.0 / 60.0, substeps: 1 }).add_plugins(
+        bevy_rapier3d::prelude::RapierPhysicsPlugin::<bevy_rapier3d::prelude::NoUserData>::default()
+            .in_fixed_schedule(),
+    );
+    app.add_plugins(WaterPlugin);
+    app.finish();
+    app.cleanup();
+    app
+}
+
+fn run(app: &mut App, seconds: f32) {
+    for _ in 0..(seconds * 60.0) as u32 {
+        app.update();
+    }
+}
+
+fn at(app: &mut App, x: f32, z: f32) -> Option<WaterSample> {
+    app.world_mut().run_system_once(move |water: WaterQuery| water.sample(vec3(x, LEVEL, z))).unwrap()
+}
+
+/// A basin of 20 m × 20 m whose ground lies 2 m under the still level.
+fn basin(settings: WaterSimulation) -> impl Bundle {
+    (Water::new(Vec2::splat(20.0)), WaterWaves::still(), settings, Transform::from_xyz(0.0, LEVEL, 0.0))
+}
+
+#[test]
+fn a_spring_fills_a_dry_basin_on_a_server() {
+    let mut app = server();
+    let source = WaterSource { at: vec2(3.0, -2.0), radius: 2.0, rate: 4.0.into() };
+    let settings = WaterSimulation { start: SimulationStart::Dry, speed: 20.0, ..default() };
+    let water = app.world_mut().spawn((basin(settings), WaterSources { sources: vec![source] })).id();
+    run(&mut app, 0.1);
+    assert_eq!(at(&mut app, -9.0, 9.0), None, "it begins dry");
+    run(&mut app, 4.9);
+    // 100 s of 4 m³/s on 400 m²; the clock begins a frame or two after the app.
+    let sample = at(&mut app, -9.0, 9.0).unwrap();
+    assert_eq!((sample.water, sample.age), (water, 0.0));
+    assert!((sample.depth - 1.0).abs() < 0.02, "{sample:?}");
+    assert!((sample.height - (LEVEL - 1.0)).abs() < 0.02, "{sample:?}");
+}
+
+#[cfg(feature = "rapier")]
+#[test]
+fn a_ball_floats_at_the_simulated_level_and_is_carried() {
+    use bevy_rapier3d::prelude::*;
+    let mut app = server();
+    let start = SimulationStart::Column { at: vec2(-10.0, 0.0), half_size: vec2(10.0, 20.0), level: 0.0 };
+    app.world_mut().spawn(basin(WaterSimulation { start, ..default() }));
+    let ball = (RigidBody::Dynamic, Collider::ball(0.3), Floating::with_density(500.0));
+    let ball = app.world_mut().spawn((ball, Transform::from_xyz(-1.5, LEVEL, 0.0))).id();
+    let place = |app: &App| app.world().get::<Transform>(ball).unwrap().translation;
+    run(&mut app, 1.0);
+    assert!(place(&app).x > -1.0, "the water that falls takes it along: {}", place(&app));
+    run(&mut app, 60.0);
+    // Half of the basin was 2 m deep: all of it is 1 m deep now, and half of the ball is under water.
+    let found = place(&app);
+    assert!((found.y - (LEVEL - 1.0)).abs() < 0.1, "{found}");
+}
+
+#[test]
+fn a_gate_that_opens_lets_the_water_through() {
+    let mut app = server();
+    let start = SimulationStart::Column { at: vec2(-10.0, 0.0), half_size: vec2(10.0, 20.0), level: -1.0 };
+    let wall = WaterWall { from: vec2(0.0, -10.0), to: vec2(0.0, 10.0), crest: bevy_freshet::body::CLOSED };
+    let walls = WaterWalls { walls: vec![wall] };
+    let water = app.world_mut().spawn((basin(WaterSimulation { start, ..default() }), walls)).id();
+    run(&mut app, 5.0);
+    assert_eq!(at(&mut app, 0.6, 0.0), None, "nothing leaks");
+    assert!((at(&mut app, -0.6, 0.0).unwrap().depth - 1.0).abs() < 1e-5);
+    app.world_mut().get_mut::<WaterWalls>(water).unwrap().walls[0].crest = -1.6;
+    run(&mut app, 120.0);
+    // Down to the crest on one side, and what flowed over it on the other.
+    let (left, right) = (at(&mut app, -6.0, 0.0).unwrap().depth, at(&mut app, 6.0, 0.0).unwrap().depth);
+    assert!((left + right - 1.0).abs() < 0.01 && left > 0.4 && right > 0.3, "{left} {right}");
+}
+
+#[test]
+fn time_that_stands_still_stops_the_water() {
+    let mut app = server();
+    let start = SimulationStart::Column { at: vec2(-10.0, 0.0), half_size: vec2(10.0, 20.0), level: 0.0 };
+    app.world_mut().spawn(basin(WaterSimulation { start, ..default() }));
+    run(&mut app, 0.5);
+    app.world_mut().resource_mut::<Time<Virtual>>().pause();
+    run(&mut app, 0.1);
+    let before = at(&mut app, 1.0, 0.0);
+    run(&mut app, 1.0);
+    assert!(before.is_some() && at(&mut app, 1.0, 0.0) == before);
+}
+
+#[test]
+fn what_cannot_be_simulated_is_said_once() {
+    let mut app = server();
+    let said = complaints(&mut app, |app| {
+        let settings = WaterSimulation { cell_size: f32::NAN, manning: -1.0, max_steps: 0, ..default() };
+        let edge = WaterEdge::all(DomainSide::West, Edge::Level(f32::NAN.into()));
+        let source = WaterSource { at: Vec2::NAN, radius: 1.0, rate: 1.0.into() };
+        app.world_mut().spawn((
+            basin(settings),
+            WaterEdges { parts: vec![edge], ..default() },
+            WaterSources { sources: vec![source] },
+        ));
+        run(app, 0.5);
+    });
+    for field in ["cell_size", "manning", "max_steps", "WaterEdges", "WaterSources"] {
+        assert_eq!(said.iter().filter(|line| line.contains(field)).count(), 1, "{field} in {said:#?}");
+    }
+    assert!((at(&mut app, 0.0, 0.0).unwrap().depth - 2.0).abs() < 1e-5, "the rest is simulated");
+}
+
+/// A column that falls over a ridge, seen from above by its heights, one second later.
+fn falling(backend: SimulationBackend) -> (Stage, Entity) {
+    let mut stage = Stage::new();
+    stage.app.insert_resource(Time::<Fixed>::from_hz(60.0));
+    let bed = WaterBed::from_fn(uvec2(60, 60), 0.2, |at| 0.5 * (-(at.x - 1.0).powi(2)).exp() - 1.0).unwrap();
+    stage.spawn((bed, Transform::from_xyz(0.0, LEVEL, 0.0)));
+    let (water, waves, surface, optics) = still_water(Vec2::splat(12.0));
+    let surface = WaterSurface { view: SurfaceView::Height, cell: 0.05, cells: 256, mesh_error: 0.0, ..surface };
+    let start = SimulationStart::Column { at: vec2(-4.0, 0.0), half_size: vec2(3.0, 9.0), level: 0.6 };
+    let settings = WaterSimulation { cell_size: 0.2, start, backend, ..default() };
+    stage.spawn((water, waves, surface, optics, settings, Transform::from_xyz(0.0, LEVEL, 0.0)));
+    let camera = stage.camera_above(vec3(0.0, LEVEL, 0.0), 6.0);
+    stage.settle();
+    stage.run(1.2);
+    (stage, camera)
+}
+
+#[test]
+fn the_height_that_is_drawn_is_the_height_that_is_asked_for_on_both_backends() {
+    let [cpu, gpu] = [SimulationBackend::Cpu, SimulationBackend::Gpu].map(|backend| {
+        let (mut stage, camera) = falling(backend);
+        let samples = heights(&mut stage, camera, Vec2::ZERO);
+        let (lowest, highest) =
+            samples.iter().fold((0.0_f32, -9.0_f32), |(low, high), sample| (low.min(sample.1), high.max(sample.1)));
+        assert!(highest - lowest > 0.1, "the water moves: {lowest}…{highest}");
+        for (place, drawn, queried) in &samples {
+            // Between the vertices, 0.05 m apart, the mesh is straight.
+            assert!((drawn - queried).abs() < 4e-3, "{backend:?} {place}: drawn {drawn}, queried {queried}");
+        }
+        samples
+    });
+    // The backends begin to run a frame or two apart.
+    let off = cpu.iter().zip(&gpu).map(|(a, b)| (a.2 - b.2).abs()).sum::<f32>() / cpu.len() as f32;
+    assert!(off < 0.02, "backends differ by {off} m");
+}
