@@ -51,7 +51,7 @@ fn setup(mut commands: Commands, assets: Res<AssetServer>, mut loading: ResMut<L
         Hdr,
         canvas.target(),
         SkyView::default(),
-        Transform::from_xyz(30.0, 26.0, 96.0).looking_at(vec3(-28.0, 0.0, 36.0), Vec3::Y),
+        Transform::from_xyz(-6.0, 9.0, 74.0).looking_at(vec3(-44.0, 1.0, 38.0), Vec3::Y),
     ));
 }
 

@@ -1,7 +1,7 @@
 //! The stages on a GPU against their twins in `freshet_hydro`, and against theory.
 #[expect(dead_code, reason = "made for pictures; only a part is needed here")]
 #[path = "../../../../tests/stage.rs"]
-mod stage;
+pub(super) mod stage;
 
 use super::*;
 use crate::{

@@ -225,7 +225,7 @@ impl UsableGpu {
             (buffers < 8).then(|| format!("max_storage_buffers_per_shader_stage is {buffers}, and 8 are needed"));
         // The type of the device has no name in the engine.
         let is_software = adapter.is_some_and(|adapter| format!("{:?}", adapter.device_type) == "Cpu");
-        let largest_binding = limits.max_storage_buffer_binding_size as u64;
+        let largest_binding = limits.max_storage_buffer_binding_size;
         Self { missing, is_hardware: !is_software, largest_binding }
     }
 

@@ -1,14 +1,10 @@
 //! The stages on a GPU against the scheme's twin, and against theory.
-#[expect(dead_code, reason = "made for pictures; only a part is needed here")]
-#[path = "../../../../../tests/stage.rs"]
-mod stage;
-
 #[path = "../../../../freshet_hydro/tests/shallow_water/analytic.rs"]
 mod analytic;
 #[path = "../../../../freshet_hydro/tests/shallow_water/cases/mod.rs"]
 mod cases;
 
-use super::*;
+use super::{super::tests::stage::Stage, *};
 use bevy::{
     prelude::*,
     render::{
@@ -20,7 +16,6 @@ use freshet_hydro::{
     grid::Grid,
     shallow_water::{Balance, Restored, ShallowWater},
 };
-use stage::Stage;
 use std::sync::{Arc, atomic::Ordering};
 
 /// Simulates on the GPU.
