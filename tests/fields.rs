@@ -26,7 +26,7 @@ fn foamy(stage: &mut Stage, foam: WaterFoam, water: impl Bundle) -> (Entity, Ent
 
 /// No foam from anywhere; it would live for 6 s.
 fn none() -> WaterFoam {
-    WaterFoam { life: 6.0, shore: 0.0, shear: 0.0, speed: 0.0, bodies: 0.0, ..default() }
+    WaterFoam { life: 6.0, shore: 0.0, shear: 0.0, breaking: 0.0, speed: 0.0, bodies: 0.0, ..default() }
 }
 
 fn place(pixel: UVec2) -> Vec2 {

@@ -61,9 +61,9 @@ struct MadeOf {
 }
 
 /// Which ground is under the cells.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct GroundKey {
-    bed: Option<(usize, [f32; 6], f32)>,
+    bed: Option<ResolvedBed>,
     level: f32,
     flat: f32,
 }
@@ -294,9 +294,20 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
 
 impl GroundKey {
     fn new(water: &ResolvedWater, settings: &WaterSimulation) -> Self {
-        let key =
-            |bed: &ResolvedBed| (Arc::as_ptr(&bed.elevations).addr(), bed.bed_from_local.to_cols_array(), bed.base);
-        Self { bed: water.bed.as_ref().map(key), level: water.level, flat: usable_ground(settings) }
+        Self { bed: water.bed.clone(), level: water.level, flat: usable_ground(settings) }
+    }
+}
+
+impl PartialEq for GroundKey {
+    fn eq(&self, other: &Self) -> bool {
+        let same_bed = match (&self.bed, &other.bed) {
+            (Some(a), Some(b)) => {
+                let same_place = a.bed_from_local == b.bed_from_local && a.base == b.base;
+                same_place && Arc::ptr_eq(&a.elevations, &b.elevations)
+            }
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        same_bed && self.level == other.level && self.flat == other.flat
     }
 }
 
