@@ -49,7 +49,7 @@ on_the_cpu! {
         uniform_to_an_open_edge
     }
     symmetry { a_round_dam times_do_not_depend_on_the_grid }
-    volume { with_inflow_tide_and_rain }
+    volume { with_inflow_tide_and_rain a_poisoned_cell_infects_nobody }
     walls {
         a_closed_wall_leaks_nothing
         a_weir_holds_what_is_below_its_crest

@@ -3,6 +3,7 @@ use bevy::{prelude::*, render::render_resource::ShaderType};
 
 /// Numbers of a frame.
 #[derive(Clone, Debug, Default, PartialEq, ShaderType)]
+#[cfg_attr(test, derive(Reflect))]
 pub(crate) struct GpuShallow {
     /// Columns and rows.
     pub size: IVec2,
@@ -28,6 +29,7 @@ pub(crate) struct GpuShallow {
 
 /// What is outside a cell of a side; see [`ShallowWater::edge_cells`](freshet_hydro::shallow_water::ShallowWater::edge_cells).
 #[derive(Clone, Copy, Debug, Default, PartialEq, ShaderType)]
+#[cfg_attr(test, derive(Reflect))]
 pub(crate) struct GpuEdge {
     pub kind: u32,
     pub value: f32,
@@ -35,6 +37,7 @@ pub(crate) struct GpuEdge {
 
 /// The clock; atomic numbers are plain ones here.
 #[derive(Clone, Copy, Debug, Default, ShaderType)]
+#[cfg_attr(test, derive(Reflect))]
 pub(super) struct GpuClock {
     pub fastest: UVec2,
     pub owed: Vec2,
@@ -46,6 +49,25 @@ pub(super) struct GpuClock {
 
 /// What left through a cell of a side.
 #[derive(Clone, Copy, Debug, Default, ShaderType)]
+#[cfg_attr(test, derive(Reflect))]
 pub(super) struct GpuLeaving {
     pub sum: Vec2,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::assert_same_layout;
+
+    #[test]
+    fn the_shaders_read_what_is_written() {
+        // Pairs of numbers in arrays have no padding in storage buffers: they lie as vectors do.
+        let wgsl = include_str!("bindings.wgsl")
+            .replace("array<atomic<u32>, 2>", "vec2<u32>")
+            .replace("array<f32, 2>", "vec2<f32>");
+        assert_same_layout::<GpuShallow, _>(&wgsl, "Numbers");
+        assert_same_layout::<GpuClock, _>(&wgsl, "Clock");
+        assert_same_layout::<GpuEdge, _>(&wgsl, "Edge");
+        assert_same_layout::<GpuLeaving, _>(&wgsl, "Leaving");
+    }
 }

@@ -185,7 +185,7 @@ on_the_gpu! {
         uniform_to_an_open_edge
     }
     symmetry { a_round_dam times_do_not_depend_on_the_grid }
-    volume { with_inflow_tide_and_rain in_a_basin_that_is_shaken }
+    volume { with_inflow_tide_and_rain in_a_basin_that_is_shaken a_poisoned_cell_infects_nobody }
     walls {
         a_closed_wall_leaks_nothing
         a_weir_holds_what_is_below_its_crest

@@ -2,7 +2,7 @@
 use super::{Run, terrain};
 use freshet_hydro::{
     grid::Grid,
-    shallow_water::{DomainSide, Edge, EdgePart, PointSource, Series},
+    shallow_water::{DomainSide, Edge, EdgePart, PointSource, Restored, Series},
 };
 use glam::Vec2;
 
@@ -91,4 +91,31 @@ pub fn with_inflow_tide_and_rain(run: Run) {
     // 300 s to 30 m³/s, then 600 s to 10 m³/s, then 900 s at that.
     let river = 4500.0 + 12_000.0 + 9000.0;
     assert!((-last.left[DomainSide::South as usize] / river - 1.0).abs() < 1e-3, "{}", last.left[3]);
+}
+
+/// One damaged cell (NaN, infinite or absurd) counts as dry and infects nobody: a step later every number is finite, and what is
+/// far from it is as it would have been.
+pub fn a_poisoned_cell_infects_nobody(run: Run) {
+    for poison in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX] {
+        for number in 0..4 {
+            let mut water = super::land(24, 20, 1.0, |x, _| 0.05 * x);
+            water.set_manning(0.03).expect("a sane roughness");
+            water.fill(1.0).expect("a sane level");
+            let mut healthy = water.clone();
+            let restored = Restored { time: 0.0, fastest_signal: water.fastest_signal(), balance: water.balance() };
+            let cells: Vec<[f32; 4]> = water.conserved().collect();
+            let damaged = cells.into_iter().enumerate().map(|(index, mut cell)| {
+                if index == 10 * 24 + 12 {
+                    cell[number] = poison;
+                }
+                cell
+            });
+            water.restore(damaged, restored);
+            run(&mut water, 0.5);
+            run(&mut healthy, 0.5);
+            assert!(water.conserved().flatten().all(f32::is_finite), "{poison} as number {number}");
+            let corner = (water.depths()[0] - healthy.depths()[0]).abs();
+            assert!(corner < 1e-5, "{poison} as number {number}: {corner}");
+        }
+    }
 }
