@@ -1,8 +1,10 @@
 //! Keeps the simulation of every water: makes it, changes it, advances it, and says what it has come to.
 use super::{
-    GpuEdge, GpuShallow, Ground, Held, Returned, ShallowFrame, ShallowWork, StartState,
+    ShallowFrame, ShallowWork,
     domain::{cells_of, ground_below, set_edges, set_walls, usable_ground},
     frame::pictures,
+    on_gpu::OnGpu,
+    usable::UsableGpu,
 };
 use crate::{
     body::{
@@ -17,20 +19,10 @@ use bevy::{
     render::renderer::{RenderAdapterInfo, RenderDevice},
 };
 use freshet_hydro::{
-    shallow_water::{Balance, CLOSED, Field, PointSource, Restored, ShallowWater},
-    waves::GRAVITY,
+    grid::Grid,
+    shallow_water::{Field, PointSource, ShallowWater, ShallowWaterError},
 };
-use std::{
-    sync::{Arc, atomic::Ordering},
-    time::Duration,
-};
-
-/// Most time that a water on the GPU may owe, s of the frame's clock.
-const MOST_OWED: f32 = 0.25;
-/// A state of the GPU is carried on for so long at most, s.
-const OLDEST: f32 = 0.25;
-/// Steps are planned for a signal that is faster than the last known one by this factor.
-const RESERVE: f64 = 1.5;
+use std::sync::Arc;
 
 /// The simulation of a water, and the pictures of it that the surface's shader reads.
 #[derive(Component, Default)]
@@ -40,15 +32,15 @@ pub(crate) struct Simulated {
 }
 
 /// A running simulation.
-struct Simulation {
-    water: ShallowWater,
+pub(super) struct Simulation {
+    pub water: ShallowWater,
     made_of: MadeOf,
     /// Elevation of the ground where there is no bed, m.
     flat: f32,
     ground: Option<GroundKey>,
     applied: Option<Applied>,
     field: Arc<Field>,
-    on_gpu: Option<OnGpu>,
+    pub on_gpu: Option<OnGpu>,
 }
 
 /// What a simulation begins anew for.
@@ -78,26 +70,6 @@ struct Applied {
     rain: f32,
 }
 
-/// How far the GPU has come.
-#[derive(Default)]
-struct OnGpu {
-    held: Arc<Held>,
-    /// Versions of state and ground.
-    start: u64,
-    ground: u64,
-    /// Time asked for since the state was set, s.
-    asked: f64,
-    /// Book and time when the state was set.
-    balance: Balance,
-    began: f64,
-    /// Simulated time of the newest state that came back, since then, s.
-    returned: f64,
-    owed: f64,
-    late: u32,
-    /// Point sources of the ground that it has, m/s.
-    sources: Vec<f32>,
-}
-
 /// A water and all that its simulation is made by.
 #[derive(QueryData)]
 #[query_data(mutable)]
@@ -120,7 +92,7 @@ impl Simulated {
     /// The newest state, and its age in seconds.
     pub fn field(&self) -> Option<(Arc<Field>, f32)> {
         let simulation = self.simulation.as_ref()?;
-        let age = simulation.on_gpu.as_ref().map_or(0.0, |gpu| (gpu.asked - gpu.returned).clamp(0.0, OLDEST.into()));
+        let age = simulation.on_gpu.as_ref().map_or(0.0, OnGpu::age);
         Some((simulation.field.clone(), age as f32))
     }
 }
@@ -206,49 +178,6 @@ fn most_steps(entity: Entity, settings: &WaterSimulation, reported: &mut Reporte
     reported.clamp(entity, "WaterSimulation::max_steps", settings.max_steps as f32, 1.0..=4096.0, 64.0) as u32
 }
 
-/// A GPU that can simulate.
-struct UsableGpu {
-    /// What is missing, if something is.
-    missing: Option<String>,
-    is_hardware: bool,
-    largest_binding: u64,
-}
-
-impl UsableGpu {
-    fn new(adapter: Option<&RenderAdapterInfo>, device: Option<&RenderDevice>) -> Self {
-        let Some(device) = device else {
-            return Self { missing: Some("there is no GPU".into()), is_hardware: false, largest_binding: 0 };
-        };
-        let limits = device.limits();
-        let buffers = limits.max_storage_buffers_per_shader_stage;
-        let missing =
-            (buffers < 8).then(|| format!("max_storage_buffers_per_shader_stage is {buffers}, and 8 are needed"));
-        // The type of the device has no name in the engine.
-        let is_software = adapter.is_some_and(|adapter| format!("{:?}", adapter.device_type) == "Cpu");
-        let largest_binding = limits.max_storage_buffer_binding_size;
-        Self { missing, is_hardware: !is_software, largest_binding }
-    }
-
-    /// Whether a water of so many cells is simulated on the GPU.
-    fn is_chosen(&self, entity: Entity, backend: SimulationBackend, cells: u64, reported: &mut Reported) -> bool {
-        let room = (cells * 16 > self.largest_binding).then(|| {
-            let most = self.largest_binding / 16;
-            format!("max_storage_buffer_binding_size has room for {most} cells, and {cells} are needed")
-        });
-        let missing = self.missing.clone().or(room);
-        match (backend, missing) {
-            (SimulationBackend::Cpu, _) | (SimulationBackend::Auto, Some(_)) => false,
-            (SimulationBackend::Auto, None) => self.is_hardware,
-            (SimulationBackend::Gpu, None) => true,
-            (SimulationBackend::Gpu, Some(missing)) => {
-                let problem = format_args!("asks for a GPU, but {missing}; the CPU is used");
-                reported.warn(entity, "WaterSimulation::backend", problem);
-                false
-            }
-        }
-    }
-}
-
 /// Makes the simulation if there is none that fits, and hands it what has changed.
 fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
     let (entity, settings, resolved) = (water.entity, water.settings, water.resolved);
@@ -267,10 +196,7 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
                 simulation.ground = Some(GroundKey::new(resolved, settings));
                 let cells = u64::from(size.x) * u64::from(size.y);
                 let on_gpu = gpu.is_chosen(entity, settings.backend, cells, reported);
-                simulation.on_gpu = on_gpu.then(|| OnGpu { start: 1, ground: 1, ..default() });
-                if let Some(gpu) = &mut simulation.on_gpu {
-                    gpu.balance = simulation.water.balance();
-                }
+                simulation.on_gpu = on_gpu.then(|| OnGpu::new(simulation.water.balance()));
                 water.simulated.simulation = Some(Box::new(simulation));
             }
             Err(error) => {
@@ -312,10 +238,7 @@ impl PartialEq for GroundKey {
 }
 
 impl Simulation {
-    fn new(
-        made_of: MadeOf,
-        ground: &freshet_hydro::grid::Grid<f32>,
-    ) -> Result<Self, freshet_hydro::shallow_water::ShallowWaterError> {
+    fn new(made_of: MadeOf, ground: &Grid<f32>) -> Result<Self, ShallowWaterError> {
         let mut water = ShallowWater::new(ground)?;
         match made_of.start {
             SimulationStart::Still => water.fill(0.0)?,
@@ -330,7 +253,7 @@ impl Simulation {
     }
 
     /// The field of the newest state, `elapsed` seconds after the one before.
-    fn see(&mut self, elapsed: f64) {
+    pub fn see(&mut self, elapsed: f64) {
         self.field = Arc::new(Field::new(&self.water, Some(&self.field), elapsed));
     }
 
@@ -361,7 +284,7 @@ impl Simulation {
             return;
         }
         let before = self.applied.take();
-        let mut refuse = |field, result: Result<(), freshet_hydro::shallow_water::ShallowWaterError>| {
+        let mut refuse = |field, result: Result<(), ShallowWaterError>| {
             if let Err(error) = result {
                 reported.warn(entity, field, format_args!("is refused: {error}"));
             }
@@ -385,125 +308,4 @@ impl Simulation {
         }
         self.applied = Some(wanted);
     }
-
-    /// Takes over the newest state that the GPU has come to.
-    fn take_returned(&mut self) {
-        let Some(gpu) = &mut self.on_gpu else { return };
-        let Some(returned) = gpu.held.take().filter(|returned| returned.start == gpu.start) else { return };
-        gpu.late = if returned.owed > 1e-4 && returned.steps > 0 { gpu.late + 1 } else { 0 };
-        gpu.owed = returned.owed;
-        if returned.time <= gpu.returned {
-            return;
-        }
-        let elapsed = returned.time - gpu.returned;
-        gpu.returned = returned.time;
-        let restored = Restored {
-            time: gpu.began + returned.time,
-            fastest_signal: returned.fastest,
-            balance: balance(&gpu.balance, &returned, &self.water),
-        };
-        self.water.restore(returned.cells.iter().map(|cell| cell.to_array()), restored);
-        self.see(elapsed);
-    }
-
-    /// What the GPU is asked to do for a frame of this duration.
-    fn ask(&mut self, duration: Duration, most: u32, speed: f32) -> super::GpuWork {
-        let forcing = self.water.forcing();
-        let (rain, entering, longest) = (forcing.rain, forcing.entering, forcing.longest_step);
-        let sources = forcing.sources.to_vec();
-        let gpu = self.on_gpu.get_or_insert_default();
-        // A lost device takes the state with it: what came back last is the beginning of another one.
-        let holds = gpu.held.start.load(Ordering::Relaxed) == gpu.start;
-        if !holds && gpu.held.was_lost() {
-            gpu.start += 1;
-            gpu.began = self.water.time();
-            (gpu.asked, gpu.returned, gpu.balance) = (0.0, 0.0, self.water.balance());
-        }
-        let added = if holds { duration.as_secs_f64() } else { 0.0 };
-        gpu.asked += added;
-        let signal = f64::from(self.water.courant() * self.water.cell_size())
-            / f64::from(self.water.fastest_signal().max(entering).max(1e-3));
-        let needed = (RESERVE * (added + gpu.owed) / signal.min(f64::from(longest))).ceil() + 2.0;
-        let size = self.water.size();
-        let manning = self.water.manning();
-        let periodic = self.water.periodic();
-        let numbers = GpuShallow {
-            size: size.as_ivec2(),
-            periodic: uvec2(periodic.0.into(), periodic.1.into()),
-            cell: self.water.cell_size(),
-            courant: self.water.courant(),
-            drag: GRAVITY * manning * manning,
-            rain,
-            added: added as f32,
-            most_owed: (MOST_OWED * speed).max(added as f32),
-            entering,
-            longest,
-        };
-        let has_walls = self.water.crests().is_some();
-        let has_sources = self.water.has_sources();
-        let start = (!holds).then(|| {
-            Arc::new(StartState {
-                version: gpu.start,
-                cells: self.water.conserved().map(Vec4::from).collect(),
-                fastest: self.water.fastest_signal(),
-            })
-        });
-        if gpu.sources != sources {
-            gpu.ground += 1;
-            gpu.sources.clone_from(&sources);
-        }
-        let has_ground = gpu.held.ground.load(Ordering::Relaxed) == gpu.ground;
-        let version = gpu.ground;
-        let ground = (!holds || !has_ground).then(|| {
-            Arc::new(Ground {
-                version,
-                bed: self.water.bed().to_vec(),
-                extras: extras(&self.water, &sources, has_walls || has_sources),
-            })
-        });
-        super::GpuWork {
-            numbers,
-            edges: self.water.edge_cells().map(|(kind, value)| GpuEdge { kind, value }).collect(),
-            start,
-            ground,
-            has_walls,
-            has_sources,
-            steps: (needed as u32).min(most).next_multiple_of(2),
-            held: self.on_gpu.as_ref().map(|gpu| gpu.held.clone()).unwrap_or_default(),
-        }
-    }
-}
-
-/// Crests and sources of every cell; nothing if there are none.
-pub(super) fn extras(water: &ShallowWater, sources: &[f32], any: bool) -> Vec<Vec4> {
-    if !any {
-        return Vec::new();
-    }
-    let open =
-        || Box::new(std::iter::repeat_n([f32::NEG_INFINITY; 2], water.bed().len())) as Box<dyn Iterator<Item = _>>;
-    let crests = water.crests().map_or_else(open, |crests| Box::new(crests));
-    // Shaders need not know infinity.
-    let finite = |crest: f32| if crest == CLOSED { 1e30 } else { crest.max(-1e30) };
-    let source = |i: usize| sources.get(i).copied().unwrap_or_default();
-    crests.enumerate().map(|(i, [east, south])| vec4(finite(east), finite(south), source(i), 0.0)).collect()
-}
-
-/// The book of a state that came back.
-pub(super) fn balance(before: &Balance, returned: &Returned, water: &ShallowWater) -> Balance {
-    let cell = f64::from(water.cell_size());
-    let count = water.bed().len() as f64;
-    let rain = returned.rained * count * cell * cell;
-    let mut balance = *before;
-    balance.rain += rain;
-    if water.has_sources() {
-        balance.sources += returned.given * cell * cell - rain;
-    }
-    let (columns, rows) = (water.size().x as usize, water.size().y as usize);
-    let mut sides = returned.left.as_slice();
-    for (left, length) in balance.left.iter_mut().zip([rows, rows, columns, columns]) {
-        let (side, rest) = sides.split_at(length.min(sides.len()));
-        *left += side.iter().sum::<f64>() * cell;
-        sides = rest;
-    }
-    balance
 }

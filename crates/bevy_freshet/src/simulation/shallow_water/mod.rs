@@ -13,12 +13,14 @@ mod domain;
 mod driver;
 mod frame;
 mod numbers;
+mod on_gpu;
 mod plan;
 mod returned;
 mod stages;
 mod state;
 #[cfg(test)]
 mod tests;
+mod usable;
 
 pub(crate) use driver::Simulated;
 pub(crate) use frame::{GpuWork, Ground, ShallowFrame, ShallowWork, StartState};

@@ -81,7 +81,7 @@ impl Gpu {
         let restored = Restored {
             time: began + returned.time,
             fastest_signal: returned.fastest,
-            balance: driver::balance(before, &returned, water),
+            balance: on_gpu::balance(before, &returned, water),
         };
         water.restore(returned.cells.iter().map(|cell| cell.to_array()), restored);
         returned.steps
@@ -133,7 +133,7 @@ fn work(water: &mut ShallowWater, [start, ground]: [u64; 2], added: f64, steps: 
         longest,
     };
     let has_walls = water.crests().is_some();
-    let extras = driver::extras(water, &sources, has_walls || !sources.is_empty());
+    let extras = on_gpu::extras(water, &sources, has_walls || !sources.is_empty());
     GpuWork {
         numbers,
         edges: water.edge_cells().map(|(kind, value)| GpuEdge { kind, value }).collect(),
