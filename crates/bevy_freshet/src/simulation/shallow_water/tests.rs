@@ -163,37 +163,12 @@ macro_rules! on_the_gpu {
     };
 }
 
-on_the_gpu! {
-    basin { planar }
-    dam_break { ritter_and_stoker }
-    edges {
-        reflect
-        a_ring_leaves
-        a_tide_is_followed
-        a_discharge_enters_dry_land
-        no_more_is_taken_than_there_is
-        a_part_of_a_side
-    }
-    order { of_a_smooth_wave }
-    rest { over_bumps over_terrain }
-    steady {
-        over_a_bump
-        a_jump_stands_still_on_any_grid
-        a_jump_stays_straight
-        uniform
-        a_sheet_on_a_slope
-        uniform_to_an_open_edge
-    }
-    symmetry { a_round_dam times_do_not_depend_on_the_grid }
-    volume { with_inflow_tide_and_rain in_a_basin_that_is_shaken a_poisoned_cell_infects_nobody }
-    walls {
-        a_closed_wall_leaks_nothing
-        a_weir_holds_what_is_below_its_crest
-        flow_over_a_weir
-        flow_over_a_dike
-        an_open_gate_leaves_no_trace
-        a_moving_bed_keeps_the_volume
-    }
+cases::every_case!(on_the_gpu);
+
+#[test]
+fn the_volume_of_a_shaken_basin_is_kept() {
+    let mut gpu = Gpu::new();
+    cases::volume::in_a_basin_that_is_shaken(&mut |water, duration| _ = gpu.run(water, duration));
 }
 
 #[test]
