@@ -25,6 +25,9 @@ pub struct WaterSimulation {
     pub ground: f32,
     /// Rain, mm/h, ≥ 0. Default 0.
     pub rain: f32,
+    /// Factor on the push of bodies that [disturb water](crate::interaction::DisturbsWater), 0…10. Default 1: that of a bluff body,
+    /// with a drag coefficient of 1. At 0 they push nothing.
+    pub push: f32,
     /// Simulated seconds in a second, 0…10⁴. Default 1.
     pub speed: f32,
     /// Most steps in a frame (on the CPU: in a fixed step), 1…4096. Default 64. If more were needed the water runs late.
@@ -74,6 +77,7 @@ impl Default for WaterSimulation {
             manning: 0.03,
             ground: -2.0,
             rain: 0.0,
+            push: 1.0,
             speed: 1.0,
             max_steps: 64,
             backend: SimulationBackend::Auto,

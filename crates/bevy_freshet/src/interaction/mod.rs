@@ -3,7 +3,7 @@
 //! Everything here ends as deposits of a water, once per frame on the virtual clock, for the simulated fields:
 //!
 //! * [`DisturbsWater`] on an entity cuts its meshes with the waves: their silhouettes at the waterline, and the water that
-//!   they displace. Floating bodies have it by themselves.
+//!   they displace. Floating bodies have it by themselves. Simulated water is pushed along by them.
 //! * [`Disturb`] is a message for everything that happens once: a stone, a splash, a blot of dye.
 //! * [`DyesWater`] on an entity leaks dye where it is in the water.
 //! * [`WaterTouch`] on a camera lets the player touch the water with mouse or finger.
@@ -21,6 +21,7 @@
 mod body;
 mod disturb;
 mod dye;
+mod push;
 mod rain;
 mod shape;
 mod silhouette;

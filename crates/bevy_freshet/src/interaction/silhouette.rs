@@ -1,12 +1,13 @@
 //! Silhouettes of bodies at the waterline.
 use super::{
     body::{BodyMotion, DisturbsWater},
+    push,
     shape::{Flaw, Shape, Shapes},
 };
 use crate::{
-    body::ResolvedWater,
+    body::{ResolvedWater, WaterSimulation},
     report::Reported,
-    simulation::{Deposits, FieldWindow, SilhouetteCell},
+    simulation::{Deposits, FieldWindow, Raster, SilhouetteCell, Simulated},
 };
 use bevy::{math::Affine3A, mesh::skinning::SkinnedMesh, prelude::*};
 use freshet_hydro::{grid::Grid, silhouette::Section, waves::WaveTrain};
@@ -58,30 +59,59 @@ impl Parts<'_, '_> {
     }
 }
 
-/// Draws the silhouettes of all bodies to the windows of all waters.
+/// A water and what bodies do to it.
+#[derive(bevy::ecs::query::QueryData)]
+#[query_data(mutable)]
+pub(super) struct Disturbed {
+    entity: Entity,
+    water: &'static ResolvedWater,
+    window: &'static FieldWindow,
+    deposits: &'static mut Deposits,
+    simulated: Option<(&'static WaterSimulation, &'static mut Simulated)>,
+}
+
+impl DisturbedItem<'_, '_> {
+    /// The cells of rings and foam, and those of the simulation if bodies push it.
+    fn rasters(&self) -> [Option<Raster>; 2] {
+        let field = self.window.raster();
+        let pushed = self.simulated.as_ref().filter(|(settings, _)| settings.push > 0.0);
+        let simulation = pushed.and_then(|(_, simulated)| simulated.raster());
+        [(field.size.min_element() > 0).then_some(field), simulation]
+    }
+}
+
+/// Draws the silhouettes of all bodies to the windows of all waters, and lets them push simulated ones.
 pub(super) fn draw_silhouettes(
     mut bodies: Query<(Entity, &mut BodyMotion), With<DisturbsWater>>,
-    mut waters: Query<(Entity, &ResolvedWater, &FieldWindow, &mut Deposits)>,
+    mut waters: Query<Disturbed>,
     mut parts: Parts,
     mut pen: Local<Pen>,
 ) {
     let Parts { shapes, events, .. } = &mut parts;
     shapes.refresh(events.read());
-    if waters.iter().all(|(_, _, window, _)| window.size.min_element() == 0) {
+    for mut water in &mut waters {
+        if let Some((_, simulated)) = &mut water.simulated {
+            simulated.pushes.clear();
+        }
+    }
+    if waters.iter_mut().all(|water| water.rasters().iter().all(Option::is_none)) {
         return;
     }
     let mut found = Vec::new();
     for (entity, mut motion) in &mut bodies {
         motion.section = None;
         parts.collect(entity, &mut found);
-        for (water_entity, water, window, mut deposits) in &mut waters {
-            if let Some(centroid) = pen.draw(&found, &motion, water, window, &mut deposits.silhouettes) {
-                motion.section = Some((water_entity, centroid));
+        for mut water in &mut waters {
+            if let Some(centroid) = pen.draw(&found, &motion, &mut water, &mut parts.reported) {
+                motion.section = Some((water.entity, centroid));
             }
         }
     }
-    for (_, _, _, mut deposits) in &mut waters {
-        merge(&mut deposits.silhouettes);
+    for mut water in &mut waters {
+        merge(&mut water.deposits.silhouettes);
+        if let Some((_, simulated)) = &mut water.simulated {
+            push::merge(&mut simulated.pushes);
+        }
     }
 }
 
@@ -92,41 +122,74 @@ pub(super) struct Pen {
     vertices: Vec<Vec3>,
 }
 
+/// A section of a body with the water.
+struct Cut {
+    area: f32,
+    centroid: Vec2,
+    /// Mean draft, m.
+    draft: f32,
+}
+
 impl Pen {
-    /// Adds the cells that a body of `parts` covers, and gives the centroid of its section (local xz, m).
+    /// Hands a water the cells that a body of `parts` covers, and gives the centroid of its section (local xz, m) if it is within
+    /// those of rings and foam.
     fn draw(
         &mut self,
         parts: &[Part],
         motion: &BodyMotion,
-        water: &ResolvedWater,
-        window: &FieldWindow,
-        cells: &mut Vec<SilhouetteCell>,
+        disturbed: &mut DisturbedItem,
+        reported: &mut Reported,
     ) -> Option<Vec2> {
+        let (water, rasters) = (disturbed.water, disturbed.rasters());
         // Heights in this frame are those over the still surface.
         let surface_from_world = water.pose().compute_affine().inverse();
         let (min, max) = bounds(parts, surface_from_world)?;
         let (lowest, highest) = water.elevations();
-        let (first, last) = (window.origin(), window.origin() + window.extent());
-        let beside = min.xz().cmpgt(last).any() || max.xz().cmplt(first).any();
-        if beside || min.y >= highest || max.y < lowest || window.size.min_element() == 0 {
+        if min.y >= highest || max.y < lowest {
             return None;
         }
-        let waves = Lattice::over(water, min.xz(), max.xz(), HEIGHT_ERROR * window.cell);
+        let [field, simulation] =
+            rasters.map(|raster| raster.filter(|raster| raster.meets(min.xz(), max.xz())));
+        let finest = [field, simulation].iter().flatten().map(|raster| raster.cell).reduce(f32::min)?;
+        let waves = Lattice::over(water, min.xz(), max.xz(), HEIGHT_ERROR * finest);
         self.cut(parts, surface_from_world, &waves);
+        let cut = self.measure()?;
+        if let (Some(raster), Some((settings, simulated))) = (simulation, &mut disturbed.simulated) {
+            let factor = reported.clamp(disturbed.entity, "WaterSimulation::push", settings.push, 0.0..=10.0, 1.0);
+            let cells = self.cells(&raster, &cut, motion, water);
+            push::push(cells, factor, cut.area, raster.size, &mut simulated.pushes);
+        }
+        disturbed.deposits.silhouettes.extend(self.cells(&field?, &cut, motion, water));
+        Some(cut.centroid)
+    }
+
+    /// What the last cut has come to; nothing if it is empty.
+    fn measure(&self) -> Option<Cut> {
         let (area, centroid) = self.section.area_and_centroid()?;
         let draft = (self.section.volume() / area).clamp(0.0, MOST_DRAFT * self.section.depth());
+        Some(Cut { area, centroid, draft })
+    }
 
-        for (cell, cover) in self.section.cover(first, window.cell, window.size).cells() {
-            let place = first + (cell.as_vec2() + 0.5) * window.cell;
+    /// The wet cells of a raster that the last cut covers.
+    fn cells(
+        &self,
+        raster: &Raster,
+        cut: &Cut,
+        motion: &BodyMotion,
+        water: &ResolvedWater,
+    ) -> impl Iterator<Item = SilhouetteCell> {
+        let cover = self.section.cover(raster.origin, raster.cell, raster.size);
+        let cells: Vec<_> = cover.cells().collect();
+        cells.into_iter().filter_map(|(cell, cover)| {
+            let place = raster.origin + (cell.as_vec2() + 0.5) * raster.cell;
             if water.still_depth(place) <= 0.0 || !water.covers(place) {
-                continue;
+                return None;
             }
             let world = water.world_from_local.transform_point2(place);
             let velocity = motion.at(vec3(world.x, water.level, world.y));
             let velocity = water.local_from_world.transform_vector2(velocity.xz());
-            cells.push(SilhouetteCell { cell, cover, draft: cover * draft, velocity });
-        }
-        Some(centroid)
+            Some(SilhouetteCell { cell, cover, draft: cover * cut.draft, velocity })
+        })
     }
 
     /// Cuts the meshes with the waves.

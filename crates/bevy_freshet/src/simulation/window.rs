@@ -21,6 +21,25 @@ pub(crate) struct FieldWindow {
     pub cell: f32,
 }
 
+/// Square cells anywhere on a water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Raster {
+    /// Local xz of the north-west corner, m.
+    pub origin: Vec2,
+    /// Size of a cell, m.
+    pub cell: f32,
+    /// Cells along local x and z.
+    pub size: UVec2,
+}
+
+impl Raster {
+    /// Whether it meets the rectangle between local `min` and `max`.
+    pub fn meets(&self, min: Vec2, max: Vec2) -> bool {
+        let last = self.origin + self.size.as_vec2() * self.cell;
+        min.cmple(last).all() && max.cmpge(self.origin).all()
+    }
+}
+
 /// Fewest cells along an axis of a window.
 const FEWEST: f32 = 16.0;
 /// Step of a window that follows the camera, cells.
@@ -40,6 +59,11 @@ impl FieldWindow {
     /// Where local `place` lies, in cells from the north-west corner: the centre of the first cell is at (½, ½).
     pub fn cells_from_place(&self, place: Vec2) -> Vec2 {
         place / self.cell - self.first.as_vec2()
+    }
+
+    /// The cells of the window.
+    pub fn raster(&self) -> Raster {
+        Raster { origin: self.origin(), cell: self.cell, size: self.size }
     }
 
     /// Size along local x and z, m.

@@ -54,6 +54,7 @@ impl ShallowWater {
         let tally = step::step(&mut self.next, &self.now, &around, numbers, &mut self.rows);
         mem::swap(&mut self.now, &mut self.next);
         self.fastest = tally.fastest;
+        self.push(dt);
         self.time += f64::from(dt);
         self.book(&tally, numbers);
         f64::from(dt)

@@ -6,6 +6,7 @@ mod edge;
 mod edges;
 mod exchange;
 mod field;
+mod push;
 mod scheme;
 mod series;
 mod source;
@@ -18,6 +19,7 @@ pub use edge::DomainSide;
 pub use edges::{Edge, EdgePart};
 pub use exchange::{Forcing, Restored};
 pub use field::{Field, FieldSample, WET};
+pub use push::Push;
 pub use scheme::{CLOSED, FILM};
 pub use series::Series;
 pub use source::PointSource;
@@ -94,6 +96,7 @@ pub struct ShallowWater {
     rain: Series,
     sources: Vec<(PointSource, Footprint)>,
     rates: Vec<f32>,
+    pushes: Vec<Push>,
     rows: Vec<Rows>,
     /// Greatest |u| + c of `now`, m/s.
     fastest: f32,
@@ -134,6 +137,7 @@ impl ShallowWater {
             rain: 0.0.into(),
             sources: Vec::new(),
             rates: Vec::new(),
+            pushes: Vec::new(),
             rows: vec![Rows::default(); rows.div_ceil(BAND)],
             fastest: 0.0,
             time: 0.0,

@@ -30,6 +30,13 @@ struct Edge {
     value: f32,
 }
 
+// What a body does to the water of a cell.
+struct Push {
+    cell: u32,
+    strength: f32,      // ½ C D/L
+    velocity: vec2<f32>,    // of the body, units: m/s
+}
+
 // What flows out of the domain through a cell of a side.
 struct Leaving {
     sum: vec2<f32>,     // volume per width so far, and what the first number cannot hold, units: m²

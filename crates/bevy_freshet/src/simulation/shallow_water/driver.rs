@@ -12,6 +12,7 @@ use crate::{
         WaterWalls,
     },
     report::Reported,
+    simulation::Raster,
 };
 use bevy::{
     ecs::query::QueryData,
@@ -20,7 +21,7 @@ use bevy::{
 };
 use freshet_hydro::{
     grid::Grid,
-    shallow_water::{Field, PointSource, ShallowWater, ShallowWaterError},
+    shallow_water::{Field, PointSource, Push, ShallowWater, ShallowWaterError},
 };
 use std::sync::Arc;
 
@@ -28,6 +29,8 @@ use std::sync::Arc;
 #[derive(Component, Default)]
 pub(crate) struct Simulated {
     simulation: Option<Box<Simulation>>,
+    /// What bodies do to its cells.
+    pub pushes: Vec<Push>,
     pub pictures: Option<[Handle<Image>; 2]>,
 }
 
@@ -89,6 +92,13 @@ impl Simulated {
         self.simulation.as_ref().map(|simulation| -simulation.flat)
     }
 
+    /// The cells of the simulation.
+    pub fn raster(&self) -> Option<Raster> {
+        let water = &self.simulation.as_ref()?.water;
+        let (cell, size) = (water.cell_size(), water.size());
+        Some(Raster { origin: -0.5 * cell * size.as_vec2(), cell, size })
+    }
+
     /// The newest state, and its age in seconds.
     pub fn field(&self) -> Option<(Arc<Field>, f32)> {
         let simulation = self.simulation.as_ref()?;
@@ -138,7 +148,7 @@ pub(super) fn simulate_on_gpu(
     for mut water in &mut waters {
         prepare(&mut water, &gpu, &mut reported);
         let (entity, settings) = (water.entity, water.settings);
-        let Simulated { simulation: Some(simulation), pictures } = &mut *water.simulated else {
+        let Simulated { simulation: Some(simulation), pictures, .. } = &mut *water.simulated else {
             commands.entity(entity).remove::<ShallowFrame>();
             continue;
         };
@@ -206,7 +216,11 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
             }
         }
     }
-    let Some(simulation) = &mut water.simulated.simulation else { return };
+    let Simulated { simulation: Some(simulation), pushes, .. } = &mut *water.simulated else { return };
+    // Those of a simulation of another size are none of this one.
+    if simulation.water.set_pushes(pushes).is_err() {
+        pushes.clear();
+    }
     simulation.follow_ground(resolved, settings);
     let applied = Applied {
         edges: water.edges.clone(),

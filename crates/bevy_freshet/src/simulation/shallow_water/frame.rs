@@ -1,5 +1,5 @@
 //! What is to be done for a shallow water in a frame, as the render world gets it.
-use super::{GpuEdge, GpuShallow, Held};
+use super::{GpuEdge, GpuPush, GpuShallow, Held};
 use bevy::{
     asset::RenderAssetUsages,
     image::ImageSampler,
@@ -36,6 +36,8 @@ pub(crate) struct GpuWork {
     pub numbers: GpuShallow,
     /// Edges of the western, eastern, northern and southern side.
     pub edges: Vec<GpuEdge>,
+    /// What bodies do to the water, each cell at most once.
+    pub pushes: Vec<GpuPush>,
     /// The state that replaces what the GPU has, unless it has it already.
     pub start: Option<Arc<StartState>>,
     /// Bed, walls and sources that replace what the GPU has.

@@ -3,7 +3,8 @@
 //! ```text
 //! begin     the time that a frame adds is owed to the water       once a frame
 //! step      Δt from the fastest signal; every cell takes a step   ┐ for each step that the
-//! border    cells at the edges take it with what is outside       ┘ frame may take
+//! border    cells at the edges take it with what is outside       │ frame may take
+//! push      bodies push the cells that they cover                 ┘
 //! show      pictures for the surface's shader                     once a frame
 //! ```
 //!
@@ -24,7 +25,7 @@ mod usable;
 
 pub(crate) use driver::Simulated;
 pub(crate) use frame::{GpuWork, Ground, ShallowFrame, ShallowWork, StartState};
-pub(crate) use numbers::{GpuEdge, GpuShallow};
+pub(crate) use numbers::{GpuEdge, GpuPush, GpuShallow};
 pub(crate) use returned::{Held, Returned};
 
 use crate::schedule::WaterSystems;
@@ -63,6 +64,7 @@ impl Plugin for StagesPlugin {
         load_shader_library!(app, "scheme.wgsl");
         load_shader_library!(app, "cells.wgsl");
         embedded_asset!(app, "border.wgsl");
+        embedded_asset!(app, "push.wgsl");
         embedded_asset!(app, "show.wgsl");
         embedded_asset!(app, "step.wgsl");
         app.add_plugins(ExtractComponentPlugin::<ShallowFrame>::default());

@@ -35,6 +35,16 @@ pub(crate) struct GpuEdge {
     pub value: f32,
 }
 
+/// What a body does to the water of a cell; see [`Push`](freshet_hydro::shallow_water::Push).
+#[derive(Clone, Copy, Debug, Default, PartialEq, ShaderType)]
+#[cfg_attr(test, derive(Reflect))]
+pub(crate) struct GpuPush {
+    /// Index of the cell.
+    pub cell: u32,
+    pub strength: f32,
+    pub velocity: Vec2,
+}
+
 /// The clock; atomic numbers are plain ones here.
 #[derive(Clone, Copy, Debug, Default, ShaderType)]
 #[cfg_attr(test, derive(Reflect))]
@@ -68,6 +78,7 @@ mod tests {
         assert_same_layout::<GpuShallow, _>(&wgsl, "Numbers");
         assert_same_layout::<GpuClock, _>(&wgsl, "Clock");
         assert_same_layout::<GpuEdge, _>(&wgsl, "Edge");
+        assert_same_layout::<GpuPush, _>(&wgsl, "Push");
         assert_same_layout::<GpuLeaving, _>(&wgsl, "Leaving");
     }
 }

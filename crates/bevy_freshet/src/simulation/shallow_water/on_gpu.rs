@@ -1,8 +1,8 @@
 //! A simulation on the GPU as the CPU knows it: what is asked of it, and what has come back.
-use super::{GpuEdge, GpuShallow, GpuWork, Ground, Held, Returned, StartState, driver::Simulation};
+use super::{GpuEdge, GpuPush, GpuShallow, GpuWork, Ground, Held, Returned, StartState, driver::Simulation};
 use bevy::prelude::*;
 use freshet_hydro::{
-    shallow_water::{Balance, CLOSED, Restored, ShallowWater},
+    shallow_water::{Balance, CLOSED, Push, Restored, ShallowWater},
     waves::GRAVITY,
 };
 use std::{
@@ -129,6 +129,7 @@ impl Simulation {
         GpuWork {
             numbers,
             edges: self.water.edge_cells().map(|(kind, value)| GpuEdge { kind, value }).collect(),
+            pushes: pushes(&self.water),
             start,
             ground,
             has_walls,
@@ -137,6 +138,17 @@ impl Simulation {
             held: self.on_gpu.as_ref().map(|gpu| gpu.held.clone()).unwrap_or_default(),
         }
     }
+}
+
+/// What bodies do to the water.
+pub(super) fn pushes(water: &ShallowWater) -> Vec<GpuPush> {
+    let columns = water.size().x;
+    let push = |push: &Push| GpuPush {
+        cell: push.cell.y * columns + push.cell.x,
+        strength: push.strength,
+        velocity: push.velocity,
+    };
+    water.pushes().iter().map(push).collect()
 }
 
 /// Crests and sources of every cell; nothing if there are none.

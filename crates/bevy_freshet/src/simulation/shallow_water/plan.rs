@@ -30,6 +30,10 @@ struct Plan {
     /// Of even and odd steps.
     groups: [BindGroup; 2],
     pictures: BindGroup,
+    /// Of even and odd steps, if bodies push.
+    pushes: Option<[BindGroup; 2]>,
+    /// How many cells they push.
+    pushed: u32,
     /// Whether there are point sources, and walls.
     variant: [bool; 2],
     steps: u32,
@@ -144,12 +148,26 @@ impl Surroundings<'_> {
             entity,
             groups: [group(0)?, group(1)?],
             pictures,
+            pushes: if work.pushes.is_empty() { None } else { Some([self.push(state, 0)?, self.push(state, 1)?]) },
+            pushed: work.pushes.len() as u32,
             variant: [work.has_sources, work.has_walls],
             steps: work.steps.next_multiple_of(2),
-            edges: (2 * (size.x + size.y)).div_ceil(64),
+            edges: 2 * (size.x + size.y),
             cells: uvec2(size.x.div_ceil(GROUP * COLUMNS), size.y.div_ceil(ROWS)),
             texels: uvec2(size.x.div_ceil(8), size.y.div_ceil(8)),
         })
+    }
+
+    /// What the pushes of a step bind: they change what the step has written.
+    fn push(&self, state: &ShallowState, parity: usize) -> Option<BindGroup> {
+        let layout = self.cache.get_bind_group_layout(&self.stages.push_layout);
+        let entries = BindGroupEntries::sequential((
+            state.parities[parity].binding()?,
+            state.clock.as_entire_binding(),
+            state.states[1 - parity].as_entire_binding(),
+            state.pushes.binding()?,
+        ));
+        Some(self.device.create_bind_group("water_shallow_push", &layout, &entries))
     }
 }
 
@@ -191,13 +209,17 @@ fn run(plan: &Plan, stages: &Stages, cache: &PipelineCache, pass: &mut ComputePa
         pass.set_bind_group(1, &plan.pictures, &[]);
         pass.dispatch_workgroups(workgroups.x, workgroups.y, 1);
     };
+    let workgroups = |count: u32| uvec2(count.div_ceil(64), 1);
     dispatch(stages.begin, &plan.groups[0], UVec2::ONE);
     let [sources, walls] = plan.variant.map(usize::from);
     let stage = &stages.steps[sources][walls];
     for step in 0..plan.steps {
         let group = &plan.groups[step as usize % 2];
         dispatch(stage.step, group, plan.cells);
-        dispatch(stage.border, group, uvec2(plan.edges, 1));
+        dispatch(stage.border, group, workgroups(plan.edges));
+        if let Some(pushes) = &plan.pushes {
+            dispatch(stages.push, &pushes[step as usize % 2], workgroups(plan.pushed));
+        }
     }
     dispatch(stages.show, &plan.groups[0], plan.texels);
 }

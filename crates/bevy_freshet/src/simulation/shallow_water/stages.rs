@@ -1,5 +1,5 @@
 //! The pipelines of the stages.
-use super::numbers::{GpuClock, GpuEdge, GpuLeaving, GpuShallow};
+use super::numbers::{GpuClock, GpuEdge, GpuLeaving, GpuPush, GpuShallow};
 use bevy::{
     asset::{AssetServer, load_embedded_asset},
     prelude::*,
@@ -18,13 +18,15 @@ pub(super) const COLUMNS: u32 = 4;
 /// Rows that an invocation goes down.
 pub(super) const ROWS: u32 = 16;
 
-/// All stages; they bind the same.
+/// All stages; they bind the same, but for `push`.
 #[derive(Resource)]
 pub(super) struct Stages {
     pub layout: BindGroupLayoutDescriptor,
     pub begin: CachedComputePipelineId,
     /// Without and with point sources, each without and with walls.
     pub steps: [[Step; 2]; 2],
+    pub push: CachedComputePipelineId,
+    pub push_layout: BindGroupLayoutDescriptor,
     /// Binds the pictures as well.
     pub show: CachedComputePipelineId,
     pub pictures: BindGroupLayoutDescriptor,
@@ -40,7 +42,7 @@ impl Stages {
     /// Whether every pipeline has been made.
     pub fn are_ready(&self, cache: &PipelineCache) -> bool {
         let steps = self.steps.iter().flatten().flat_map(|step| [step.step, step.border]);
-        steps.chain([self.begin, self.show]).all(|stage| cache.get_compute_pipeline(stage).is_some())
+        steps.chain([self.begin, self.push, self.show]).all(|stage| cache.get_compute_pipeline(stage).is_some())
     }
 }
 
@@ -73,9 +75,19 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
         entry_point: Some("main".into()),
         ..default()
     });
+    let push_layout = push_layout();
+    let push = cache.queue_compute_pipeline(ComputePipelineDescriptor {
+        label: Some("water_shallow_push".into()),
+        layout: vec![push_layout.clone()],
+        shader: load_embedded_asset!(&*assets, "push.wgsl"),
+        entry_point: Some("main".into()),
+        ..default()
+    });
     commands.insert_resource(Stages {
         begin: stage("water_shallow_begin", &step, "begin", &[]),
         steps: [[pair(&[]), pair(&["WALLS"])], [pair(&["SOURCES"]), pair(&["SOURCES", "WALLS"])]],
+        push,
+        push_layout,
         show,
         pictures,
         layout,
@@ -89,6 +101,19 @@ fn pictures_layout() -> BindGroupLayoutDescriptor {
         (picture(TextureFormat::Rgba32Float), picture(TextureFormat::Rgba16Float)),
     );
     BindGroupLayoutDescriptor::new("water_shallow_pictures", &entries)
+}
+
+fn push_layout() -> BindGroupLayoutDescriptor {
+    let entries = BindGroupLayoutEntries::sequential(
+        ShaderStages::COMPUTE,
+        (
+            uniform_buffer::<UVec4>(false),
+            storage_buffer_sized(false, Some(GpuClock::min_size())),
+            storage_buffer_sized(false, Some(Vec4::min_size())),
+            storage_buffer_read_only_sized(false, Some(GpuPush::min_size())),
+        ),
+    );
+    BindGroupLayoutDescriptor::new("water_shallow_push", &entries)
 }
 
 fn layout() -> BindGroupLayoutDescriptor {

@@ -2,7 +2,7 @@
 use super::{
     GpuWork, ShallowFrame, ShallowWork,
     frame::{Ground, StartState},
-    numbers::{GpuClock, GpuEdge, GpuLeaving, GpuShallow},
+    numbers::{GpuClock, GpuEdge, GpuLeaving, GpuPush, GpuShallow},
     returned::Copies,
 };
 use bevy::{
@@ -24,6 +24,7 @@ pub(super) struct ShallowState {
     pub ground: u64,
     pub numbers: UniformBuffer<GpuShallow>,
     pub edges: StorageBuffer<Vec<GpuEdge>>,
+    pub pushes: StorageBuffer<Vec<GpuPush>>,
     /// Which of two values a step reads: 0 in the first and 1 in the second.
     pub parities: [UniformBuffer<UVec4>; 2],
     pub clock: Buffer,
@@ -57,6 +58,7 @@ impl ShallowState {
             ground: 0,
             numbers: default(),
             edges: default(),
+            pushes: default(),
             parities: [parity(0), parity(1)],
             clock: buffer("water_shallow_clock", &bytes_of(&clock)),
             states: [buffer("water_shallow_a", &cells), buffer("water_shallow_b", &cells)],
@@ -68,6 +70,7 @@ impl ShallowState {
         };
         state.numbers.set_label(Some("water_shallow_numbers"));
         state.edges.set_label(Some("water_shallow_edges"));
+        state.pushes.set_label(Some("water_shallow_pushes"));
         state.set_ground(device, ground);
         state
     }
@@ -92,6 +95,10 @@ impl ShallowState {
         self.numbers.write_buffer(device, queue);
         self.edges.set(work.edges.clone());
         self.edges.write_buffer(device, queue);
+        if !work.pushes.is_empty() {
+            self.pushes.set(work.pushes.clone());
+            self.pushes.write_buffer(device, queue);
+        }
         self.parities.iter_mut().for_each(|parity| parity.write_buffer(device, queue));
         work.held.start.store(self.start, Ordering::Relaxed);
         work.held.ground.store(self.ground, Ordering::Relaxed);

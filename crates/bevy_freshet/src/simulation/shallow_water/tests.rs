@@ -137,6 +137,7 @@ fn work(water: &mut ShallowWater, [start, ground]: [u64; 2], added: f64, steps: 
     GpuWork {
         numbers,
         edges: water.edge_cells().map(|(kind, value)| GpuEdge { kind, value }).collect(),
+        pushes: on_gpu::pushes(water),
         start: Some(Arc::new(StartState {
             version: start,
             cells: water.conserved().map(Vec4::from).collect(),

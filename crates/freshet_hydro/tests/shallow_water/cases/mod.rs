@@ -4,6 +4,7 @@ pub mod basin;
 pub mod dam_break;
 pub mod edges;
 pub mod order;
+pub mod push;
 pub mod rest;
 pub mod steady;
 pub mod symmetry;
@@ -29,6 +30,7 @@ macro_rules! every_case {
                 a_part_of_a_side
             }
             order { of_a_smooth_wave }
+            push { by_the_drag_of_a_body a_bow_wave_and_a_trough a_body_that_drifts_leaves_no_trace }
             rest { over_bumps over_terrain }
             steady {
                 over_a_bump

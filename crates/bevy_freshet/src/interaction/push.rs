@@ -1,0 +1,81 @@
+//! How bodies push simulated water.
+use crate::simulation::SilhouetteCell;
+use bevy::prelude::*;
+use freshet_hydro::shallow_water::Push;
+
+/// Share of its push that a cell keeps along an axis; its two neighbours have the rest, so that none is pushed alone.
+const KEPT: f32 = 0.5;
+
+/// Adds what a body does to the water of a simulation of `size` cells: the drag of its silhouette's `cells`, whose `area` is that of
+/// the whole section (m²), with this drag `coefficient`.
+pub(super) fn push(
+    cells: impl Iterator<Item = SilhouetteCell>,
+    coefficient: f32,
+    area: f32,
+    size: UVec2,
+    pushes: &mut Vec<Push>,
+) {
+    // s = ½ C D/L with the length of a square of the same area.
+    let per_draft = 0.5 * coefficient / area.sqrt();
+    for silhouette in cells {
+        let strength = per_draft * silhouette.draft;
+        for neighbour in 0..9 {
+            let offset = ivec2(neighbour % 3, neighbour / 3) - 1;
+            let cell = silhouette.cell.as_ivec2() + offset;
+            if cell.cmpge(IVec2::ZERO).all() && cell.cmplt(size.as_ivec2()).all() {
+                let share = |offset: i32| if offset == 0 { KEPT } else { 0.5 * (1.0 - KEPT) };
+                let strength = strength * share(offset.x) * share(offset.y);
+                pushes.push(Push { cell: cell.as_uvec2(), strength, velocity: silhouette.velocity });
+            }
+        }
+    }
+}
+
+/// Puts what is said of one cell together: strengths add up, and velocities are averaged by them.
+pub(super) fn merge(pushes: &mut Vec<Push>) {
+    pushes.retain(|push| push.strength > 0.0 && push.strength.is_finite() && push.velocity.is_finite());
+    pushes.sort_by_key(|push| (push.cell.y, push.cell.x));
+    pushes.dedup_by(|next, kept| {
+        let same = next.cell == kept.cell;
+        if same {
+            kept.strength += next.strength;
+            kept.velocity = kept.velocity.lerp(next.velocity, next.strength / kept.strength);
+        }
+        same
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn silhouette(x: u32, y: u32, draft: f32, velocity: Vec2) -> SilhouetteCell {
+        SilhouetteCell { cell: uvec2(x, y), cover: 1.0, draft, velocity }
+    }
+
+    #[test]
+    fn a_push_is_spread_and_its_sum_kept() {
+        let mut pushes = Vec::new();
+        push([silhouette(3, 4, 0.8, Vec2::X)].into_iter(), 2.0, 4.0, uvec2(8, 8), &mut pushes);
+        merge(&mut pushes);
+        let sum: f32 = pushes.iter().map(|push| push.strength).sum();
+        assert!(pushes.len() == 9 && (sum - 0.5 * 2.0 * 0.8 / 2.0).abs() < 1e-6, "{sum}");
+        assert!(pushes.iter().all(|push| push.velocity == Vec2::X));
+        let middle = pushes.iter().find(|push| push.cell == uvec2(3, 4)).expect("the middle is pushed");
+        assert!((middle.strength / sum - 0.25).abs() < 1e-6);
+    }
+
+    #[test]
+    fn bodies_that_meet_in_a_cell_push_it_together() {
+        let mut pushes = Vec::new();
+        push([silhouette(0, 0, 1.0, Vec2::X)].into_iter(), 1.0, 1.0, uvec2(4, 4), &mut pushes);
+        push([silhouette(0, 0, 3.0, Vec2::Y)].into_iter(), 1.0, 1.0, uvec2(4, 4), &mut pushes);
+        merge(&mut pushes);
+        // A corner has three neighbours.
+        assert_eq!(pushes.len(), 4);
+        assert!(pushes.iter().all(|push| (push.velocity - vec2(0.25, 0.75)).length() < 1e-6));
+        push([silhouette(1, 1, f32::NAN, Vec2::Y)].into_iter(), 1.0, 1.0, uvec2(4, 4), &mut pushes);
+        merge(&mut pushes);
+        assert_eq!(pushes.len(), 4);
+    }
+}

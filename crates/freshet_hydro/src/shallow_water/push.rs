@@ -1,0 +1,82 @@
+//! Bodies that push the water.
+use super::{
+    FILM, ShallowWater, ShallowWaterError, number,
+    scheme::{DEEPEST, FASTEST, max, per_depth, sane},
+};
+use crate::waves::GRAVITY;
+use glam::{UVec2, Vec2};
+
+/// What a body does to the water of one cell while it is in it: the quadratic drag between the two.
+///
+/// ```text
+/// ∂(h u)/∂t = s |v − u| (v − u)        s = ½ C D/L
+/// ```
+///
+/// with the velocity v of the body, its drag coefficient C, its length L (m) and the depth D (m) of what it displaces, averaged over
+/// the cell. Over all cells of a body of draft D that covers L² it sums to ½ ρ C (L D) |v − u| (v − u), whatever the size of a cell.
+///
+/// It moves no volume, and water is never faster for it than the body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Push {
+    /// Column and row of the cell; each at most once.
+    pub cell: UVec2,
+    /// ½ C D/L, ≥ 0.
+    pub strength: f32,
+    /// Velocity v of the body (x, z), m/s.
+    pub velocity: Vec2,
+}
+
+impl ShallowWater {
+    /// Replaces what bodies do to the water in every step from now on.
+    ///
+    /// # Errors
+    /// [`ShallowWaterError::Number`] if a cell is outside, a strength is negative or not finite, or a velocity is not below 10 km/s.
+    pub fn set_pushes(&mut self, pushes: &[Push]) -> Result<(), ShallowWaterError> {
+        for push in pushes {
+            if push.cell.cmpge(self.size()).any() {
+                return Err(number("the cell of a push", "inside the domain", push.cell.max_element() as f32));
+            }
+            if !(push.strength.is_finite() && push.strength >= 0.0) {
+                return Err(number("the strength of a push", "finite and not negative", push.strength));
+            }
+            if !(push.velocity.abs().max_element() < FASTEST) {
+                return Err(number("the speed of a push", "finite and below 10 km/s", push.velocity.length()));
+            }
+        }
+        self.pushes.clear();
+        self.pushes.extend_from_slice(pushes);
+        Ok(())
+    }
+
+    /// What bodies do to the water.
+    pub fn pushes(&self) -> &[Push] {
+        &self.pushes
+    }
+
+    /// Lets bodies act for `dt` (s) on the state after a step.
+    pub(super) fn push(&mut self, dt: f32) {
+        for push in &self.pushes {
+            let index = push.cell.y as usize * self.size.0 + push.cell.x as usize;
+            let depth = max(sane(self.now.depth[index], DEEPEST), 0.0);
+            if depth < FILM {
+                continue;
+            }
+            let factor = per_depth(depth);
+            let speed = |discharge: f32| sane(discharge * factor, FASTEST);
+            let u = speed(self.now.discharge_x[index]);
+            let w = speed(self.now.discharge_z[index]);
+            let (from_u, from_w) = (u - push.velocity.x, w - push.velocity.y);
+            let kept = kept_of_difference(push.strength * factor * dt, (from_u * from_u + from_w * from_w).sqrt());
+            let (u, w) = (push.velocity.x + from_u * kept, push.velocity.y + from_w * kept);
+            self.now.discharge_x[index] = depth * u;
+            self.now.discharge_z[index] = depth * w;
+            self.fastest = max(self.fastest, max(u.abs(), w.abs()) + (GRAVITY * depth).sqrt());
+        }
+    }
+}
+
+/// Share of a difference in velocity that is left after a quadratic drag of `rate` (s/m, s Δt/h) on it, fully implicit: the root of
+/// w = w₀ − rate |w| w.
+fn kept_of_difference(rate: f32, difference: f32) -> f32 {
+    2.0 / (1.0 + (1.0 + 4.0 * rate * difference).sqrt())
+}
