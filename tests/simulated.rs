@@ -93,6 +93,39 @@ fn a_gate_that_opens_lets_the_water_through() {
     assert!((left + right - 1.0).abs() < 0.01 && left > 0.4 && right > 0.3, "{left} {right}");
 }
 
+/// Level before and behind a crate (m over the still level) that is towed to the south over a basin turned by 30°, and the largest
+/// level anywhere.
+fn towed(push: f32, speed: f32) -> [f32; 3] {
+    let mut app = server();
+    let turn = Quat::from_rotation_y(30_f32.to_radians());
+    let water = basin(WaterSimulation { cell_size: 0.5, push, ..default() });
+    let water = app.world_mut().spawn(water).id();
+    app.world_mut().get_mut::<Transform>(water).unwrap().rotation = turn;
+    let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(Cuboid::new(2.0, 2.0, 2.0));
+    let body = app.world_mut().spawn((Mesh3d(mesh), DisturbsWater, Transform::from_xyz(0.0, LEVEL, -4.0))).id();
+    for _ in 0..240 {
+        app.world_mut().get_mut::<Transform>(body).unwrap().translation.z += speed / 60.0;
+        run(&mut app, 1.01 / 60.0);
+    }
+    let z = app.world().get::<Transform>(body).unwrap().translation.z;
+    let places = [1.8, -1.8].map(|offset| at(&mut app, 0.0, z + offset).unwrap().height - LEVEL);
+    let highest = (0..144).map(|i| vec2((i % 12) as f32 - 5.5, (i / 12) as f32 - 5.5));
+    let highest = highest.map(|place| (at(&mut app, place.x, place.y).unwrap().height - LEVEL).abs()).fold(0.0, f32::max);
+    [places[0], places[1], highest]
+}
+
+#[test]
+fn a_body_pushes_the_water_before_it() {
+    let [bow, stern, _] = towed(1.0, 1.5);
+    assert!(bow > 0.006 && stern < -0.006, "bow {bow} m, stern {stern} m");
+    let [bow, stern, _] = towed(1.0, -1.5);
+    assert!(bow < -0.006 && stern > 0.006, "the other way: {bow} m, {stern} m");
+    for (push, speed) in [(0.0, 1.5), (1.0, 0.0)] {
+        let [.., highest] = towed(push, speed);
+        assert!(highest < 1e-6, "push {push}, speed {speed}: {highest} m");
+    }
+}
+
 #[test]
 fn time_that_stands_still_stops_the_water() {
     let mut app = server();
@@ -110,7 +143,9 @@ fn time_that_stands_still_stops_the_water() {
 fn what_cannot_be_simulated_is_said_once() {
     let mut app = server();
     let said = complaints(&mut app, |app| {
-        let settings = WaterSimulation { cell_size: f32::NAN, manning: -1.0, max_steps: 0, ..default() };
+        let settings = WaterSimulation { cell_size: f32::NAN, manning: -1.0, max_steps: 0, push: -1.0, ..default() };
+        let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(Cuboid::default());
+        app.world_mut().spawn((Mesh3d(mesh), DisturbsWater, Transform::from_xyz(0.0, LEVEL, 0.0)));
         let edge = WaterEdge::all(DomainSide::West, Edge::Level(f32::NAN.into()));
         let source = WaterSource { at: Vec2::NAN, radius: 1.0, rate: 1.0.into() };
         app.world_mut().spawn((
@@ -120,7 +155,7 @@ fn what_cannot_be_simulated_is_said_once() {
         ));
         run(app, 0.5);
     });
-    for field in ["cell_size", "manning", "max_steps", "WaterEdges", "WaterSources"] {
+    for field in ["cell_size", "manning", "max_steps", "push", "WaterEdges", "WaterSources"] {
         assert_eq!(said.iter().filter(|line| line.contains(field)).count(), 1, "{field} in {said:#?}");
     }
     assert!((at(&mut app, 0.0, 0.0).unwrap().depth - 2.0).abs() < 1e-5, "the rest is simulated");

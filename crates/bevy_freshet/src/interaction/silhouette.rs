@@ -74,7 +74,7 @@ impl DisturbedItem<'_, '_> {
     /// The cells of rings and foam, and those of the simulation if bodies push it.
     fn rasters(&self) -> [Option<Raster>; 2] {
         let field = self.window.raster();
-        let pushed = self.simulated.as_ref().filter(|(settings, _)| settings.push > 0.0);
+        let pushed = self.simulated.as_ref().filter(|(settings, _)| settings.push != 0.0);
         let simulation = pushed.and_then(|(_, simulated)| simulated.raster());
         [(field.size.min_element() > 0).then_some(field), simulation]
     }
