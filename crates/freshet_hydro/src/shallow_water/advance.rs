@@ -6,6 +6,9 @@ use std::mem;
 /// Part of a duration that is not worth a step: Δt is rounded to an `f32`.
 const LEAST: f64 = 1e-7;
 
+/// Speed of waves, m/s, on water of 1 mm, from which on it counts as wet.
+const SLOWEST: f32 = 0.1;
+
 /// What [`ShallowWater::advance`] did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Advance {
@@ -33,6 +36,15 @@ impl ShallowWater {
             advance.left = 0.0;
         }
         advance
+    }
+
+    /// Duration, s, of the step that the Courant number allows now; no longer than over land that is just wet. An
+    /// [`advance`](ShallowWater::advance) by it is one step.
+    pub fn next_step(&mut self) -> f64 {
+        let Forcing { entering, longest_step, .. } = self.forcing();
+        let signal = self.courant * self.cell_size / self.fastest.max(entering).max(SLOWEST);
+        // A hair less, so that rounding makes no two steps of it.
+        0.9999 * f64::from(signal.min(longest_step))
     }
 
     /// Takes one step of at most `most` (s), which the Courant number may shorten. Returns its duration, s.
