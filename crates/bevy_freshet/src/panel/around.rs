@@ -205,19 +205,24 @@ fn series(ui: &mut Ui, series: &mut Series, unit: &str, speed: f64) {
 
 fn draw_sources(ui: &mut Ui, panel: &mut WaterPanel, sources: &mut Vec<WaterSource>) {
     let mut removed = None;
-    egui::Grid::new("sources").num_columns(5).show(ui, |ui| {
-        for (i, source) in sources.iter_mut().enumerate() {
-            ui.add(DragValue::new(&mut source.at.x).prefix("x ").speed(0.1).max_decimals(2)).on_hover_text("Place, m.");
-            ui.add(DragValue::new(&mut source.at.y).prefix("z ").speed(0.1).max_decimals(2)).on_hover_text("Place, m.");
-            ui.add(DragValue::new(&mut source.radius).prefix("r ").speed(0.05).range(0.0..=1e4).max_decimals(2))
-                .on_hover_text("Radius over which it is spread, m.");
-            series(ui, &mut source.rate, " m³/s", 0.05);
-            if ui.small_button("Remove").clicked() {
-                removed = Some(i);
+    // An empty grid would leave a gap.
+    if !sources.is_empty() {
+        egui::Grid::new("sources").num_columns(5).show(ui, |ui| {
+            for (i, source) in sources.iter_mut().enumerate() {
+                ui.add(DragValue::new(&mut source.at.x).prefix("x ").speed(0.1).max_decimals(2))
+                    .on_hover_text("Place, m.");
+                ui.add(DragValue::new(&mut source.at.y).prefix("z ").speed(0.1).max_decimals(2))
+                    .on_hover_text("Place, m.");
+                ui.add(DragValue::new(&mut source.radius).prefix("r ").speed(0.05).range(0.0..=1e4).max_decimals(2))
+                    .on_hover_text("Radius over which it is spread, m.");
+                series(ui, &mut source.rate, " m³/s", 0.05);
+                if ui.small_button("Remove").clicked() {
+                    removed = Some(i);
+                }
+                ui.end_row();
             }
-            ui.end_row();
-        }
-    });
+        });
+    }
     if let Some(i) = removed {
         sources.remove(i);
     }

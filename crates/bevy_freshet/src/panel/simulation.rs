@@ -3,12 +3,13 @@ use super::{
     WaterPanel, around,
     group::{self, Group, Owner},
     rows::{choice, row},
+    scale::shown,
 };
 use crate::body::{
     ResetSimulation, SimulationBackend, SimulationStart, SimulationState, StepSimulation, WaterSimulation,
 };
 use bevy::prelude::*;
-use bevy_egui::egui::{self, Align, ComboBox, DragValue, Layout, Ui};
+use bevy_egui::egui::{self, Button, ComboBox, DragValue, Ui};
 use core::any::TypeId;
 
 /// The settings that are one number or choice.
@@ -40,24 +41,24 @@ pub(super) fn draw(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, water
         let state = world.get::<SimulationState>(water).copied().unwrap_or_default();
         ui.label(progress(&state));
         balance(ui, panel, &state);
-        group::draw_rows(ui, world, panel, water, &SETTINGS);
         start(ui, world, water);
+        group::draw_rows(ui, world, panel, water, &SETTINGS);
         around::draw(ui, world, panel, water);
     });
     panel.note(ui, SETTINGS.title, &header.header_response);
 }
 
 fn clock(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, water: Entity) {
-    let Some(mut paused) = world.get::<WaterSimulation>(water).map(|simulation| simulation.paused) else { return };
+    let Some(paused) = world.get::<WaterSimulation>(water).map(|simulation| simulation.paused) else { return };
     ui.horizontal(|ui| {
-        let pause = ui.toggle_value(&mut paused, "Pause").on_hover_text("Lets this water stand still.");
+        let pause = ui.add(Button::new("Pause").selected(paused)).on_hover_text("Lets this water stand still.");
         panel.note(ui, "Pause simulation", &pause);
-        if pause.changed()
+        if pause.clicked()
             && let Some(mut simulation) = world.get_mut::<WaterSimulation>(water)
         {
-            simulation.paused = paused;
+            simulation.paused = !paused;
         }
-        let step = ui.add_enabled(paused, egui::Button::new("Step"));
+        let step = ui.add_enabled(paused, Button::new("Step"));
         panel.note(ui, "Step simulation", &step);
         if step.on_hover_text("Takes one step.").on_disabled_hover_text("Takes one step while it is paused.").clicked()
         {
@@ -81,9 +82,11 @@ fn progress(state: &SimulationState) -> String {
     };
     let (time, late) = (duration(*time), duration(*late));
     format!(
-        "{} × {} cells of {cell_size:.3} m, on the {backend}\n{time} simulated, {late} late\n\
-         {steps} steps of {step:.4} s, state {age:.2} s old",
-        cells.x, cells.y
+        "{} × {} cells of {} m, on the {backend}\n{time} simulated, {late} late\n\
+         steps: {steps} of {step:.4} s, state {age:.2} s old",
+        cells.x,
+        cells.y,
+        shown(*cell_size)
     )
 }
 
@@ -98,7 +101,8 @@ fn duration(seconds: f64) -> String {
 
 /// A volume in a form that is always as wide.
 fn volume(cubic_metres: f64) -> String {
-    if cubic_metres.abs() < 1e7 { format!("{cubic_metres:.2} m³") } else { format!("{cubic_metres:.6e} m³") }
+    let digits = if cubic_metres.abs() < 1e9 { format!("{cubic_metres:.2}") } else { format!("{cubic_metres:.6e}") };
+    format!("{:>14}", if digits == "-0.00" { "0.00" } else { &digits })
 }
 
 fn balance(ui: &mut Ui, panel: &mut WaterPanel, state: &SimulationState) {
@@ -112,13 +116,13 @@ fn balance(ui: &mut Ui, panel: &mut WaterPanel, state: &SimulationState) {
         ("North", north, "What entered from the north, less what left there."),
         ("South", south, "What entered from the south, less what left there."),
         ("Now", volume(state.volume), "What there is now."),
-        ("Error", format!("{:.1e} m³", state.error()), "What is there now and none of the above explains."),
+        ("Error", format!("{:>14.1e}", state.error()), "What is there now and none of the above explains."),
     ];
-    let header = egui::CollapsingHeader::new("Volumes").default_open(true).show(ui, |ui| {
+    let header = egui::CollapsingHeader::new("Volumes, m³").default_open(true).show(ui, |ui| {
         egui::Grid::new("volumes").num_columns(2).striped(true).min_col_width(90.0).show(ui, |ui| {
             for (name, value, tip) in rows {
                 ui.label(name).on_hover_text(tip);
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(value).on_hover_text(tip));
+                ui.monospace(value).on_hover_text(tip);
                 ui.end_row();
             }
         });
@@ -168,6 +172,7 @@ mod tests {
     #[test]
     fn times_and_volumes_are_readable() {
         assert_eq!([0.5, 3599.0, 3600.0, 45_296.0].map(duration), ["0.50 s", "3599.00 s", "1 h 00 min", "12 h 34 min"]);
-        assert_eq!([-12.346, 1.234_567_8e9].map(volume), ["-12.35 m³", "1.234568e9 m³"]);
+        let volumes = [-12.346, -1e-9, 1.234_567_8e9].map(volume);
+        assert_eq!(volumes, ["        -12.35", "          0.00", "    1.234568e9"]);
     }
 }

@@ -145,7 +145,7 @@ fn camera_choice(ui: &mut Ui, world: &mut World, camera: Entity, level: f32) {
 fn view_choice(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, water: Entity) {
     let Some(mut surface) = world.get_mut::<WaterSurface>(water) else { return };
     let mut view = surface.view;
-    let combo = ComboBox::from_label("View").selected_text(view.name()).show_ui(ui, |ui| {
+    let combo = ComboBox::from_label("View").height(400.0).selected_text(view.name()).show_ui(ui, |ui| {
         for each in SurfaceView::ALL {
             ui.selectable_value(&mut view, each, each.name()).on_hover_text(each.legend());
         }

@@ -70,7 +70,7 @@ impl SurfaceView {
             Self::Ice => "Red: thickness, full at 1 m. Green: drawn cover. Blue: snow on it.",
             Self::Level => "Level without waves, over the still level.",
             Self::Speed => "Speed of the current.",
-            Self::Froude => "Speed of the current over that of long waves, u/√(g d): above 1 no wave runs upstream.",
+            Self::Froude => "Speed of the current over that of long waves, u/√(gd): above 1 no wave runs upstream.",
             Self::Age => "Age of the simulated state that bodies and queries know.",
         }
     }
