@@ -33,7 +33,7 @@ pub struct SimulationState {
     pub time: f64,
     /// Steps of the newest frame (on the CPU: fixed step).
     pub steps: u32,
-    /// Length of a step, s.
+    /// Length of a step, s: on the CPU of the newest, on the GPU as the Courant number allows.
     pub step: f64,
     /// Simulated time by which it has fallen behind its clock since the start, s.
     pub late: f64,

@@ -107,3 +107,26 @@ impl ShallowWater {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Grid;
+    use glam::{Vec2, uvec2};
+
+    #[test]
+    fn the_next_step_is_one_step_and_as_long_as_the_courant_number_allows() {
+        let bed = Grid::new(uvec2(30, 20), 0.5, vec![-1.0; 600]).expect("a valid shape");
+        let mut water = ShallowWater::new(&bed).expect("a finite bed");
+        // Over dry land it is that on water of 1 mm.
+        assert!((water.next_step() - 0.9999 * 0.45 * 0.5 / 0.1).abs() < 1e-6);
+        water.set_water(|at, _| (if at.x < 0.0 { 1.5 } else { 0.2 }, Vec2::ZERO)).expect("sane water");
+        for _ in 0..100 {
+            let step = water.next_step();
+            let allowed = 0.45 * 0.5 / f64::from(water.fastest_signal());
+            assert!((step / allowed - 0.9999).abs() < 1e-6, "{step} s of {allowed} s");
+            let advance = water.advance(step, 9);
+            assert_eq!((advance.steps, advance.left), (1, 0.0));
+        }
+    }
+}
