@@ -15,6 +15,8 @@ fn main() -> AppExit {
     app.add_plugins((RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(), WaterPlugin, SkyPlugin))
         .insert_resource(TimestepMode::Fixed { dt: common::FRAME as f32, substeps: 1 })
         .add_systems(Startup, (setup, crates));
+    #[cfg(feature = "panel")]
+    app.add_plugins(bevy_freshet::panel::WaterPanelPlugin::default());
     common::run(app)
 }
 

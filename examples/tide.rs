@@ -16,6 +16,8 @@ const SHOWN: f32 = 120.0;
 fn main() -> AppExit {
     let mut app = common::app("bevy_freshet: tide", &Options::parse());
     app.add_plugins((WaterPlugin, SkyPlugin)).add_systems(Startup, setup);
+    #[cfg(feature = "panel")]
+    app.add_plugins(bevy_freshet::panel::WaterPanelPlugin::default());
     common::run(app)
 }
 

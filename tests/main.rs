@@ -21,6 +21,7 @@ mod optics;
 mod reflection;
 mod river;
 mod robustness;
+mod running;
 mod shore;
 mod simulated;
 mod star_filter;

@@ -128,7 +128,7 @@ fn unusable_settings_neither_panic_nor_draw_anything_wrong() {
 const UNUSABLE: &str = "
     WaterWaves::trains WaterWaves::depth WaterWaves::fade_depth WaterFlow::uniform WaterFlow::scale
     WaterSurface::cell WaterSurface::cells WaterSurface::ripples WaterSurface::ripple_size WaterSurface::roughness
-    WaterSurface::mesh_error
+    WaterSurface::mesh_error WaterSurface::view_scale
     WaterReflection::resolution WaterReflection::refresh WaterReflection::clip_offset WaterReflection::distance
     WaterReflection::distortion
     WaterOptics::absorption WaterOptics::backscatter WaterOptics::index Fresnel::Simple::correction
@@ -153,6 +153,7 @@ fn parameters_that_are_not_numbers_are_named_once_and_fall_back_to_sane_ones() {
             ripple_size: -1.0,
             roughness: nan,
             mesh_error: nan,
+            view_scale: nan,
             ..default()
         },
         WaterReflection { resolution: nan, refresh: 0, clip_offset: nan, distance: -1.0, distortion: nan, ..default() },

@@ -9,7 +9,7 @@ use bevy_freshet::prelude::*;
 use std::time::Duration;
 
 /// A server: no renderer and no window; a frame is a fixed step of 1/60 s.
-fn server() -> App {
+pub fn server() -> App {
     let step = Duration::from_secs_f64(1.0 / 60.0);
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default()))
@@ -27,18 +27,18 @@ fn server() -> App {
     app
 }
 
-fn run(app: &mut App, seconds: f32) {
+pub fn run(app: &mut App, seconds: f32) {
     for _ in 0..(seconds * 60.0) as u32 {
         app.update();
     }
 }
 
-fn at(app: &mut App, x: f32, z: f32) -> Option<WaterSample> {
+pub fn at(app: &mut App, x: f32, z: f32) -> Option<WaterSample> {
     app.world_mut().run_system_once(move |water: WaterQuery| water.sample(vec3(x, LEVEL, z))).unwrap()
 }
 
 /// A basin of 20 m × 20 m whose ground lies 2 m under the still level.
-fn basin(settings: WaterSimulation) -> impl Bundle {
+pub fn basin(settings: WaterSimulation) -> impl Bundle {
     (Water::new(Vec2::splat(20.0)), WaterWaves::still(), settings, Transform::from_xyz(0.0, LEVEL, 0.0))
 }
 

@@ -1,7 +1,7 @@
 //! The inspecting views: known water has known colours.
 use crate::stage::{Picture, SIZE, Stage, still_water};
-use bevy::prelude::*;
-use bevy_freshet::prelude::*;
+use bevy::{ecs::system::RunSystemOnce, prelude::*};
+use bevy_freshet::{prelude::*, surface::ViewScale};
 use freshet_hydro::grid::Grid;
 
 /// Width of the picture, m: 20 pixels a metre.
@@ -179,4 +179,111 @@ fn bodies_are_red_where_they_cut_the_water() {
         let drawn = color_at(&picture, PLACE + away).x;
         assert!((drawn - cover).abs() < 0.02, "{away} m away: {drawn}, expected {cover}");
     }
+}
+
+/// Colours of the scale at its ends and in the middle, linear.
+const SCALE: [Vec3; 3] = [vec3(0.1015, 0.0338, 0.1721), vec3(0.0097, 0.3710, 0.4748), vec3(0.8118, 0.8349, 0.2951)];
+
+/// The colour of a value on the scale of a view.
+fn on_scale(view: SurfaceView, value: f32) -> Vec3 {
+    let scale = view.scale().unwrap();
+    ViewScale::color((value - scale.low) / (scale.high - scale.low)).to_vec3()
+}
+
+fn assert_color(drawn: Vec3, expected: Vec3, what: &str) {
+    assert!((drawn - expected).abs().max_element() < 0.02, "{what}: {drawn}, expected {expected}");
+}
+
+#[test]
+fn the_scale_goes_from_dark_violet_over_teal_to_light_yellow() {
+    // Computed apart from this crate, from Oklab's definition.
+    for (share, color) in [(0.0, SCALE[0]), (0.5, SCALE[1]), (1.0, SCALE[2])] {
+        assert!((ViewScale::color(share).to_vec3() - color).abs().max_element() < 1e-4, "{share}");
+    }
+}
+
+#[test]
+fn a_mapped_current_has_the_colours_of_its_speed_and_froude_number() {
+    for speed in [0.5_f32, 3.0, 7.0] {
+        let flow = || Some(WaterFlow::uniform(vec2(0.6, -0.8) * speed));
+        let picture = scene(&mut Stage::new(), SurfaceView::Speed, flow());
+        assert_color(color_at(&picture, Vec2::ONE), on_scale(SurfaceView::Speed, speed), "speed");
+        let picture = scene(&mut Stage::new(), SurfaceView::Froude, flow());
+        for x in [-6.0, -2.0, 5.0] {
+            // The bed falls along x; the middle of a pixel is at 0.025 m.
+            let depth = SLOPE * (x + 0.025 + 8.0);
+            let froude = speed / (9.81 * depth).sqrt();
+            assert_color(color_at(&picture, vec2(x, 1.0)), on_scale(SurfaceView::Froude, froude), "Froude number");
+        }
+    }
+    for view in [SurfaceView::Level, SurfaceView::Age] {
+        let picture = scene(&mut Stage::new(), view, None);
+        assert_color(color_at(&picture, Vec2::ONE), on_scale(view, 0.0), "what is not simulated");
+    }
+}
+
+/// A column that has fallen for a second in a basin 2 m deep.
+fn fallen(view: SurfaceView, settings: WaterSimulation) -> (Stage, Picture) {
+    let mut stage = Stage::new();
+    stage.app.insert_resource(Time::<Fixed>::from_hz(60.0));
+    let (water, waves, surface, optics) = still_water(Vec2::splat(16.0));
+    let start = SimulationStart::Column { at: vec2(-8.0, 0.0), half_size: vec2(7.0, 9.0), level: 1.5 };
+    let surface = WaterSurface { view, cell: 0.1, mesh_error: 0.0, ..surface };
+    stage.spawn((water, waves, surface, optics, WaterSimulation { cell_size: 0.5, start, ..settings }));
+    let camera = stage.camera_above(Vec3::ZERO, WIDTH);
+    stage.settle();
+    stage.run(1.0);
+    let picture = stage.picture(camera);
+    (stage, picture)
+}
+
+#[test]
+fn simulated_water_has_the_colours_of_its_numbers_on_both_backends() {
+    for backend in [SimulationBackend::Cpu, SimulationBackend::Gpu] {
+        let settings = WaterSimulation { backend, ..default() };
+        for view in [SurfaceView::Level, SurfaceView::Speed, SurfaceView::Froude] {
+            let (mut stage, picture) = fallen(view, settings.clone());
+            let mut values = Vec::new();
+            for place in [vec2(-7.0, 1.0), vec2(-4.0, -2.0), vec2(-2.5, 0.0), vec2(0.5, 1.0)] {
+                // The middle of its pixel.
+                let place = (pixel_at(place).as_vec2() + 0.5 - SIZE.as_vec2() / 2.0) * (WIDTH / SIZE.x as f32);
+                let sample = move |water: WaterQuery| water.sample(place.extend(0.0).xzy());
+                let sample = stage.app.world_mut().run_system_once(sample).unwrap().unwrap();
+                let speed = sample.velocity.xz().length();
+                let value = match view {
+                    SurfaceView::Level => sample.height,
+                    SurfaceView::Speed => speed,
+                    _ => speed / (9.81 * sample.depth).sqrt(),
+                };
+                values.push(value);
+                assert_color(
+                    color_at(&picture, place),
+                    on_scale(view, value),
+                    &format!("{backend:?} {view:?} {place}"),
+                );
+            }
+            let range = values.iter().fold([f32::MAX, f32::MIN], |[low, high], &v| [low.min(v), high.max(v)]);
+            assert!(range[1] - range[0] > 0.3, "{view:?}: {values:?}");
+        }
+    }
+}
+
+#[test]
+fn a_state_that_comes_late_has_the_colour_of_its_age() {
+    // So many steps as it would need are not allowed.
+    for (speed, age) in [(1e3, 0.25), (1.0, 0.0)] {
+        let settings = WaterSimulation { backend: SimulationBackend::Gpu, speed, max_steps: 2, ..default() };
+        let (_, picture) = fallen(SurfaceView::Age, settings);
+        assert_color(color_at(&picture, vec2(-7.0, 1.0)), on_scale(SurfaceView::Age, age), "age");
+    }
+}
+
+#[test]
+fn a_factor_widens_the_scale_of_a_view() {
+    let mut stage = Stage::new();
+    let (water, waves, surface, optics) = still_water(Vec2::splat(39.0));
+    let surface = WaterSurface { view: SurfaceView::Speed, view_scale: 0.5, ..surface };
+    stage.spawn((water, waves, surface, optics, WaterFlow::uniform(vec2(1.0, 0.0))));
+    let camera = stage.camera_above(Vec3::ZERO, WIDTH);
+    assert_color(color_at(&stage.picture(camera), Vec2::ONE), SCALE[1], "1 of 2 m/s");
 }

@@ -91,7 +91,14 @@ fn inside() -> ExitCode {
             WaterPanelPlugin::default(),
         ))
         .insert_resource(ClearColor(Color::srgb(0.5, 0.7, 0.9)))
-        .insert_resource(Script { step: 0, start: Instant::now(), inputs: default(), calm: 0, pictures: Vec::new() })
+        .insert_resource(Script {
+            step: 0,
+            start: Instant::now(),
+            inputs: default(),
+            calm: 0,
+            pictures: Vec::new(),
+            time: 0.0,
+        })
         .add_systems(Startup, setup)
         .add_systems(Update, run_script)
         .run();
@@ -133,6 +140,8 @@ struct Script {
     /// Frames since the last input.
     calm: u32,
     pictures: Vec<Image>,
+    /// Simulated time before a step.
+    time: f64,
 }
 
 /// Frames between inputs, so that the panel sees each of them by itself.
@@ -142,7 +151,7 @@ const GAP: u32 = 3;
 const SETTLE: u32 = 10;
 
 /// What is done and expected, one step after the other. A step is asked again until what it waits for is there.
-const STEPS: [fn(&mut World, &mut Script) -> Option<()>; 10] = [
+const STEPS: [fn(&mut World, &mut Script) -> Option<()>; 14] = [
     |world, script| {
         // The window may not be on the screen yet when its first frames are drawn.
         (script.start.elapsed() > Duration::from_secs(2)).then_some(())?;
@@ -186,9 +195,36 @@ const STEPS: [fn(&mut World, &mut Script) -> Option<()>; 10] = [
         take_picture(world);
         Some(())
     },
-    |_, script| {
+    |world, script| {
         (script.pictures.len() == 3).then_some(())?;
         assert_picture_changed(&script.pictures[1], &script.pictures[2]);
+        assert!(place(world, "Simulation").is_none(), "the water is not simulated yet");
+        let water = world.query_filtered::<Entity, With<Water>>().single(world).unwrap();
+        world.entity_mut(water).insert(WaterSimulation::default());
+        Some(())
+    },
+    // The water is simulated, paused, and taken a step further.
+    |world, script| {
+        (simulated(world).1.time > 0.0).then_some(())?;
+        script.click(place(world, "Simulation")?.center());
+        Some(())
+    },
+    |world, script| {
+        script.click(place(world, "Pause simulation")?.center());
+        Some(())
+    },
+    |world, script| {
+        let (settings, state) = simulated(world);
+        (settings.paused && state.steps == 0).then_some(())?;
+        script.time = state.time;
+        script.click(place(world, "Step simulation")?.center());
+        Some(())
+    },
+    |world, script| {
+        let step = simulated(world).1.time - script.time;
+        (step > 0.0).then_some(())?;
+        // 45 % of a metre at the speed of waves on 2 m of water.
+        assert!((step - 0.45 / (9.81_f64 * 2.0).sqrt()).abs() < 1e-4, "{step} s");
         script.key("F1");
         Some(())
     },
@@ -242,6 +278,11 @@ fn assert_context_is_on_window(world: &mut World) {
 
 fn reflectivity(world: &mut World) -> f32 {
     world.query::<&WaterOptics>().single(world).unwrap().reflectivity
+}
+
+fn simulated(world: &mut World) -> (WaterSimulation, SimulationState) {
+    let (settings, state) = world.query::<(&WaterSimulation, &SimulationState)>().single(world).unwrap();
+    (settings.clone(), *state)
 }
 
 fn xdotool(args: &[String]) {

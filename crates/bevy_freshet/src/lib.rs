@@ -41,9 +41,9 @@ pub mod prelude {
         WaterPlugin, WaterSystems,
         bed::BedShading,
         body::{
-            DomainSide, Edge, Fresnel, Series, SimulationBackend, SimulationStart, Water, WaterBed, WaterEdge,
-            WaterEdges, WaterFlow, WaterFoam, WaterIce, WaterInteraction, WaterLighting, WaterOptics, WaterSimulation,
-            WaterSource, WaterSources, WaterWall, WaterWalls, WaterWaves,
+            DomainSide, Edge, Fresnel, ResetSimulation, Series, SimulationBackend, SimulationStart, SimulationState,
+            StepSimulation, Water, WaterBed, WaterEdge, WaterEdges, WaterFlow, WaterFoam, WaterIce, WaterInteraction,
+            WaterLighting, WaterOptics, WaterSimulation, WaterSource, WaterSources, WaterWall, WaterWalls, WaterWaves,
         },
         interaction::{Disturb, DisturbsWater, DyesWater, WaterTouch, WaterTouchBlocked},
         query::{WaterHit, WaterQuery, WaterSample},

@@ -8,6 +8,7 @@ mod interaction;
 mod lighting;
 mod optics;
 mod resolved;
+mod running;
 mod simulation;
 mod waves;
 
@@ -19,6 +20,7 @@ pub use interaction::WaterInteraction;
 pub use lighting::WaterLighting;
 pub use optics::{Fresnel, WaterOptics};
 pub(crate) use resolved::{ResolvedBed, ResolvedWater};
+pub use running::{Balance, ResetSimulation, SimulationState, StepSimulation};
 pub use simulation::{
     CLOSED, DomainSide, Edge, Series, SimulationBackend, SimulationStart, WaterEdge, WaterEdges, WaterSimulation,
     WaterSource, WaterSources, WaterWall, WaterWalls,
@@ -82,14 +84,14 @@ impl Default for Water {
 fn end_water(removed: On<Remove, Water>, mut commands: Commands) {
     let Ok(mut water) = commands.get_entity(removed.entity) else { return };
     water.try_remove::<(ResolvedWater, FieldWindow, FieldPictures, FieldProgress, Deposits)>();
-    water.try_remove::<(Simulated, ShallowFrame)>();
+    water.try_remove::<(Simulated, SimulationState, ShallowFrame)>();
     water.try_insert(FieldFrame::Off);
 }
 
 /// Without [`WaterSimulation`] the water is still again.
 fn end_simulation(removed: On<Remove, WaterSimulation>, mut commands: Commands) {
     if let Ok(mut water) = commands.get_entity(removed.entity) {
-        water.try_remove::<(Simulated, ShallowFrame)>();
+        water.try_remove::<(Simulated, SimulationState, ShallowFrame)>();
     }
 }
 

@@ -1,4 +1,5 @@
 //! Water that is simulated: what to simulate, and what acts on it from outside.
+use super::SimulationState;
 use crate::simulation::Simulated;
 use bevy::prelude::*;
 pub use freshet_hydro::shallow_water::{CLOSED, DomainSide, Edge, Series};
@@ -10,10 +11,12 @@ pub use freshet_hydro::shallow_water::{CLOSED, DomainSide, Edge, Series};
 /// What acts on it from outside are [`WaterEdges`], [`WaterSources`] and [`WaterWalls`] beside it. All levels are in metres over
 /// the water's still level, the height of its entity.
 ///
-/// Changing `cell_size` or `start`, or the water's size, begins anew; all else may change while it runs.
+/// Changing `cell_size` or `start`, or the water's size, begins anew; all else may change while it runs. [`SimulationState`] says
+/// how it stands, [`ResetSimulation`](super::ResetSimulation) begins anew, and while it is paused
+/// [`StepSimulation`](super::StepSimulation) takes it a step further.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, Debug)]
-#[require(WaterEdges, WaterSources, WaterWalls, Simulated)]
+#[require(WaterEdges, WaterSources, WaterWalls, SimulationState, Simulated)]
 pub struct WaterSimulation {
     /// Side of a cell, m, > 0. Default 1.
     pub cell_size: f32,
@@ -34,6 +37,9 @@ pub struct WaterSimulation {
     pub max_steps: u32,
     /// Where it is simulated.
     pub backend: SimulationBackend,
+    /// Whether it stands still: levels and currents stay, and no time is owed for it. Waves, ripples, rings and foam go on, and
+    /// foam drifts with the current that stands. Default false.
+    pub paused: bool,
 }
 
 /// Where a water is simulated.
@@ -81,6 +87,7 @@ impl Default for WaterSimulation {
             speed: 1.0,
             max_steps: 64,
             backend: SimulationBackend::Auto,
+            paused: false,
         }
     }
 }

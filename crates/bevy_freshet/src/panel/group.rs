@@ -33,20 +33,26 @@ pub(super) type Pending = HashMap<(Entity, TypeId, &'static str), Box<dyn Partia
 
 /// Draws a group for `entity`, and writes what is changed. Nothing where the entity lacks the component.
 pub(super) fn draw_group(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, entity: Entity, group: &Group) {
+    let has_it = {
+        let registry = world.resource::<AppTypeRegistry>().read();
+        current(world, &registry, entity, (group.component)()).is_some()
+    };
+    if has_it {
+        let header = egui::CollapsingHeader::new(group.title).show(ui, |ui| draw_rows(ui, world, panel, entity, group));
+        panel.note(ui, group.title, &header.header_response);
+    }
+}
+
+/// Draws the rows of a group without its header.
+pub(super) fn draw_rows(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, entity: Entity, group: &Group) {
     let registry = world.resource::<AppTypeRegistry>().clone();
     let registry = registry.read();
-    if current(world, &registry, entity, (group.component)()).is_none() {
-        return;
+    for row in group.rows {
+        draw_row(ui, world, panel, &registry, entity, group, row);
     }
-    let header = egui::CollapsingHeader::new(group.title).show(ui, |ui| {
-        for row in group.rows {
-            draw_row(ui, world, panel, &registry, entity, group, row);
-        }
-        if ui.small_button("Defaults").on_hover_text("Sets this group to its defaults.").clicked() {
-            set_defaults(world, &registry, entity, group);
-        }
-    });
-    panel.note(ui, group.title, &header.header_response);
+    if ui.small_button("Defaults").on_hover_text("Sets this group to its defaults.").clicked() {
+        set_defaults(world, &registry, entity, group);
+    }
 }
 
 fn draw_row(
@@ -142,11 +148,17 @@ fn write(
 mod tests {
     use super::*;
     use crate::{
-        body::{Fresnel, Water, WaterFlow, WaterIce, WaterOptics},
-        panel::groups::GROUPS,
+        body::{
+            Fresnel, Water, WaterEdges, WaterFlow, WaterIce, WaterOptics, WaterSimulation, WaterSources, WaterWalls,
+        },
+        panel::{groups::GROUPS, simulation::SETTINGS},
         preset,
         sky::Sky,
     };
+
+    fn groups() -> impl Iterator<Item = &'static Group> {
+        GROUPS.iter().chain([&SETTINGS])
+    }
 
     fn registry() -> AppTypeRegistry {
         App::new().world().resource::<AppTypeRegistry>().clone()
@@ -156,7 +168,7 @@ mod tests {
     fn every_row_finds_its_field_and_its_default_is_within_range() {
         let registry = registry();
         let registry = registry.read();
-        for group in GROUPS {
+        for group in groups() {
             let default = registry.get_type_data::<ReflectDefault>((group.component)()).unwrap().default();
             for row in group.rows {
                 let path = format!("{} {}", group.title, row.path);
@@ -172,24 +184,27 @@ mod tests {
 
     #[test]
     fn every_setting_has_a_row_or_a_section_of_its_own() {
-        // Drawn by `waves.rs` and by the choice of views; layers are the game's.
-        let elsewhere = ["trains", "view", "layers"];
+        // Drawn by `waves.rs`, `simulation.rs` and the choice of views; layers are the game's.
+        let elsewhere = ["trains", "start", "paused", "view", "layers"];
         let registry = registry();
         let registry = registry.read();
-        for group in GROUPS {
+        for group in groups() {
             let info = registry.get_type_info((group.component)()).unwrap().as_struct().unwrap();
             for field in info.field_names().iter().filter(|field| !elsewhere.contains(field)) {
                 let has_row = group.rows.iter().any(|row| row.path == *field);
                 assert!(has_row, "{}::{field}", group.title);
             }
         }
-        // And every component that presets save has a group.
+        // And every component that presets save has a group, or is drawn by `around.rs`.
         let mut world = App::new();
         let world = world.world_mut();
-        let water = world.spawn((Water::default(), WaterFlow::default(), WaterIce::default())).id();
+        let simulation = WaterSimulation::default();
+        let water = world.spawn((Water::default(), WaterFlow::default(), WaterIce::default(), simulation)).id();
+        let around = [TypeId::of::<WaterEdges>(), TypeId::of::<WaterSources>(), TypeId::of::<WaterWalls>()];
         let scene = preset::PresetScene { water, sky: None, camera: None };
         for component in preset::Preset::of(world, scene).components() {
-            assert!(GROUPS.iter().any(|group| (group.component)() == component), "{component:?}");
+            let has_group = groups().any(|group| (group.component)() == component);
+            assert!(has_group || around.contains(&component), "{component:?}");
         }
     }
 

@@ -159,6 +159,14 @@ const SURFACE: Group = Group {
         choice("Sunlight", "sunlight", "Whether sun and moon glitter."),
         row("Mesh cell", "cell", [0.005, 10.0], "m", "Spacing of the mesh near the camera.").logarithmic(),
         row("Mesh cells", "cells", [8.0, 256.0], "", "Cells across the finest part of the mesh."),
+        row(
+            "View scale",
+            "view_scale",
+            [0.01, 100.0],
+            "",
+            "Factor on the range of level, speed, Froude number and age.",
+        )
+        .logarithmic(),
         row("Mesh error", "mesh_error", [0.0, 4.0], "px", "How far off its place a coarser mesh may draw each wave."),
     ],
 };

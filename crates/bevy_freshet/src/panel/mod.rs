@@ -10,6 +10,7 @@
 //! While the pointer is over it, [`FreeCamera`](bevy::camera_controller::free_camera::FreeCamera) and [`OrbitCamera`]
 //! stand still, and [`WaterTouch`](crate::interaction::WaterTouch) is blocked.
 mod actions;
+mod around;
 mod attach;
 mod group;
 mod groups;
@@ -17,6 +18,8 @@ mod hold;
 mod orbit;
 mod presets;
 mod rows;
+mod scale;
+mod simulation;
 mod waves;
 mod window;
 

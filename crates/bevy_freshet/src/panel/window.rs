@@ -1,7 +1,7 @@
 //! The window of the panel.
 use super::{
     DropRequested, OrbitCamera, RestartRequested, WaterPanel, actions, attach::scene_camera, group, group::Owner,
-    groups::GROUPS, presets, waves,
+    groups::GROUPS, presets, scale, simulation, waves,
 };
 use crate::{
     body::Water,
@@ -50,6 +50,7 @@ fn contents(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, camera: Enti
     if let Some(water) = water {
         view_choice(ui, world, panel, water);
         switches(ui, world, panel, water);
+        simulation::draw(ui, world, panel, water);
         presets::draw(ui, world, panel, PresetScene { water, sky, camera: Some(camera) });
     } else {
         ui.label("There is no water.");
@@ -144,7 +145,7 @@ fn camera_choice(ui: &mut Ui, world: &mut World, camera: Entity, level: f32) {
 fn view_choice(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, water: Entity) {
     let Some(mut surface) = world.get_mut::<WaterSurface>(water) else { return };
     let mut view = surface.view;
-    let combo = ComboBox::from_label("View").selected_text(view.name()).show_ui(ui, |ui| {
+    let combo = ComboBox::from_label("View").height(400.0).selected_text(view.name()).show_ui(ui, |ui| {
         for each in SurfaceView::ALL {
             ui.selectable_value(&mut view, each, each.name()).on_hover_text(each.legend());
         }
@@ -153,6 +154,9 @@ fn view_choice(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, water: En
     combo.response.on_hover_text("Draws the water, or one of its parts.");
     if view != SurfaceView::Water {
         ui.weak(view.legend());
+    }
+    if let Some(shown) = view.scale() {
+        scale::draw(ui, shown.times(surface.view_scale));
     }
     if view != surface.view {
         surface.view = view;

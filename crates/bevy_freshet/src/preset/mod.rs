@@ -200,7 +200,12 @@ fn settings_type(registration: &TypeRegistration, is_camera: bool) -> Option<&'s
 
 /// The fields of a component that are settings and do not belong to the scene.
 fn setting_fields(info: &'static StructInfo) -> impl Iterator<Item = &'static str> {
-    const OF_THE_SCENE: [(&str, &str); 2] = [("WaterSurface", "view"), ("WaterReflection", "layers")];
+    const OF_THE_SCENE: [(&str, &str); 4] = [
+        ("WaterSurface", "view"),
+        ("WaterSurface", "view_scale"),
+        ("WaterReflection", "layers"),
+        ("WaterSimulation", "paused"),
+    ];
     let component = info.type_path_table().short_path();
     info.field_names().iter().copied().filter(move |field| !OF_THE_SCENE.contains(&(component, field)))
 }

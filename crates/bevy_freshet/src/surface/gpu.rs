@@ -79,6 +79,8 @@ pub(crate) struct GpuSurface {
     // For SurfaceView.
     pub current_drift: Vec2,
     pub current_scale: f32,
+    pub view_range: Vec2,
+    pub simulated_age: f32,
 
     // Ice
     pub ice_order_size: Vec2,

@@ -11,6 +11,7 @@ mod ice_tile;
 mod material;
 mod mesh;
 mod ripples;
+mod scale;
 mod shape;
 mod sync;
 mod tile;
@@ -21,6 +22,7 @@ mod write;
 pub(crate) use gpu::GpuSurface;
 pub(crate) use ice::write_frozen;
 pub(crate) use ripples::advance_ripples;
+pub use scale::ViewScale;
 pub(crate) use sync::GroundTextures;
 pub use viewer::NoWater;
 pub(crate) use viewer::{ViewerData, Viewers};
@@ -61,6 +63,8 @@ pub struct WaterSurface {
     pub sunlight: bool,
     /// What is drawn. Default [`SurfaceView::Water`].
     pub view: SurfaceView,
+    /// Factor on the range of the views level, speed, Froude number and age, 0.001…1000. Default 1. See [`SurfaceView::scale`].
+    pub view_scale: f32,
 }
 
 impl Default for WaterSurface {
@@ -74,6 +78,7 @@ impl Default for WaterSurface {
             roughness: 0.002,
             sunlight: true,
             view: SurfaceView::Water,
+            view_scale: 1.0,
         }
     }
 }
@@ -111,6 +116,14 @@ pub enum SurfaceView {
     Dye,
     /// Ice: red its thickness in m as bodies feel it, green the drawn cover, blue the snow on it.
     Ice,
+    /// Level without waves over the still level, −2…2 m. This and what follows have the colours of a [`ViewScale`].
+    Level,
+    /// Speed of the current, 0…4 m/s.
+    Speed,
+    /// Froude number of the current, u/√(g d), 0…2: 1 is critical.
+    Froude,
+    /// Age of the simulated state that bodies and queries know, 0…0.25 s of simulated time.
+    Age,
 }
 
 /// Draws the water. Does nothing in an app without a GPU device.

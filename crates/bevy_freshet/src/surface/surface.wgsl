@@ -147,6 +147,10 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
         case types::VIEW_FOAM: { color = vec3(fields.foam); }
         case types::VIEW_INTERACTION: { color = vec3(fields.cover, max(20.0 * vec2(fields.height, -fields.height), vec2(0.0))); }
         case types::VIEW_DYE: { color = exp(-fields.dye); }
+        case types::VIEW_LEVEL: { color = views::scaled(ground::risen(in.rest)); }
+        case types::VIEW_SPEED: { color = views::scaled(views::current_speed(in.rest, still_depth)); }
+        case types::VIEW_FROUDE: { color = views::scaled(views::froude(in.rest, still_depth)); }
+        case types::VIEW_AGE: { color = views::scaled(surface.simulated_age); }
         case types::VIEW_ICE: { color = vec3(felt.thickness, sheet.cover, sheet.snow); }
         default: {}
     }

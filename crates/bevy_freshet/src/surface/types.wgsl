@@ -77,6 +77,8 @@ struct Surface {
 
     current_drift: vec2<f32>,       // uniform part of the current, local xz, units: m/s
     current_scale: f32,             // factor on the flow map
+    view_range: vec2<f32>,          // value of the first colour of a view, and colours per unit
+    simulated_age: f32,             // of the state that bodies and queries know, units: s
 
     // Ice
     ice_order_size: vec2<f32>,      // cells
@@ -120,6 +122,10 @@ const VIEW_FOAM: u32 = 10u;
 const VIEW_INTERACTION: u32 = 11u;
 const VIEW_DYE: u32 = 12u;
 const VIEW_ICE: u32 = 13u;
+const VIEW_LEVEL: u32 = 14u;
+const VIEW_SPEED: u32 = 15u;
+const VIEW_FROUDE: u32 = 16u;
+const VIEW_AGE: u32 = 17u;
 
 const FRESNEL_SIMPLE: u32 = 0u;
 const FRESNEL_SCHLICK: u32 = 1u;

@@ -3,7 +3,7 @@ use super::SurfaceView;
 
 impl SurfaceView {
     /// Every view, the water itself first.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 18] = [
         Self::Water,
         Self::Reflection,
         Self::Refraction,
@@ -18,6 +18,10 @@ impl SurfaceView {
         Self::Interaction,
         Self::Dye,
         Self::Ice,
+        Self::Level,
+        Self::Speed,
+        Self::Froude,
+        Self::Age,
     ];
 
     /// What it is called.
@@ -37,6 +41,10 @@ impl SurfaceView {
             Self::Interaction => "interaction",
             Self::Dye => "dye",
             Self::Ice => "ice",
+            Self::Level => "level",
+            Self::Speed => "speed",
+            Self::Froude => "Froude number",
+            Self::Age => "age",
         }
     }
 
@@ -60,6 +68,10 @@ impl SurfaceView {
             Self::Interaction => "Red: covered by bodies. Green: raised by rings, blue: lowered; full at 5 cm.",
             Self::Dye => "Light that a metre of the water lets through, by dye alone. White: no dye.",
             Self::Ice => "Red: thickness, full at 1 m. Green: drawn cover. Blue: snow on it.",
+            Self::Level => "Level without waves, over the still level.",
+            Self::Speed => "Speed of the current.",
+            Self::Froude => "Speed of the current over that of long waves, u/√(gd): above 1 no wave runs upstream.",
+            Self::Age => "Age of the simulated state that bodies and queries know.",
         }
     }
 }

@@ -9,6 +9,9 @@
 // Speed at which the colour of the current is brightest, m/s.
 const FULL_SPEED: f32 = 2.0;
 
+// units: m/s²
+const GRAVITY: f32 = 9.81;
+
 // Pixels across the tile of an arrow, at least, where the water is seen most sharply.
 const ARROW_PIXELS: f32 = 24.0;
 
@@ -59,6 +62,39 @@ fn depth(still_depth: f32) -> vec3<f32> {
         return hue(step / 6.0);
     }
     return vec3(0.0, 0.0, 5.0 - step);
+}
+
+// Speed of the current, m/s.
+fn current_speed(place: vec2<f32>, still_depth: f32) -> f32 {
+    return length(current(place, still_depth));
+}
+
+// Speed of the current over that of long waves.
+fn froude(place: vec2<f32>, still_depth: f32) -> f32 {
+    return current_speed(place, still_depth) / sqrt(GRAVITY * max(still_depth, 1e-3));
+}
+
+// The colour of a number on the scale of the view.
+fn scaled(value: f32) -> vec3<f32> {
+    return even_color(clamp((value - surface.view_range.x) * surface.view_range.y, 0.0, 1.0));
+}
+
+// The colour at `share` of a scale: lightness and hue of Oklab go evenly. The twin is `ViewScale::color` in `scale.rs`.
+fn even_color(share: f32) -> vec3<f32> {
+    let lightness = 0.4 + 0.52 * share;
+    let turn = radians(310.0 - 200.0 * share);
+    let ab = 0.11 * vec2(cos(turn), sin(turn));
+    let roots = lightness + vec3(
+        dot(ab, vec2(0.39633778, 0.21580376)),
+        dot(ab, vec2(-0.105561346, -0.06385417)),
+        dot(ab, vec2(-0.08948418, -1.2914855)),
+    );
+    let cones = roots * roots * roots;
+    return vec3(
+        dot(cones, vec3(4.0767417, -3.3077116, 0.23096994)),
+        dot(cones, vec3(-1.268438, 2.6097574, -0.3413194)),
+        dot(cones, vec3(-0.0041960863, -0.7034186, 1.7076147)),
+    );
 }
 
 // Share of a pixel that the edges of the mesh's triangles cover, see `nested_grid`: the grid lines of the ring, and the

@@ -203,7 +203,15 @@ fn write_detail(
         SurfaceView::Interaction => 11,
         SurfaceView::Dye => 12,
         SurfaceView::Ice => 13,
+        SurfaceView::Level => 14,
+        SurfaceView::Speed => 15,
+        SurfaceView::Froude => 16,
+        SurfaceView::Age => 17,
     };
+    let factor = reported.clamp(entity, "WaterSurface::view_scale", settings.view_scale, 1e-3..=1e3, 1.0);
+    if let Some(scale) = settings.view.scale().map(|scale| scale.times(factor)) {
+        gpu.view_range = vec2(scale.low, (scale.high - scale.low).recip());
+    }
 }
 
 /// Bed and current of the water, and their textures.
@@ -225,7 +233,8 @@ pub(crate) fn write_ground(
         bed_texture = Some(ground.bed(&bed.elevations, images));
     }
     gpu.current_drift = water.drift;
-    if let Some((field, _)) = &water.simulated {
+    if let Some((field, age)) = &water.simulated {
+        gpu.simulated_age = *age;
         gpu.flags |= GpuSurface::SIMULATED;
         gpu.simulated_size = field.size().as_vec2();
         gpu.simulated_cell = field.cell_size();

@@ -6,6 +6,9 @@ use std::mem;
 /// Part of a duration that is not worth a step: Δt is rounded to an `f32`.
 const LEAST: f64 = 1e-7;
 
+/// Speed of waves, m/s, on water of 1 mm, from which on it counts as wet.
+const SLOWEST: f32 = 0.1;
+
 /// What [`ShallowWater::advance`] did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Advance {
@@ -33,6 +36,15 @@ impl ShallowWater {
             advance.left = 0.0;
         }
         advance
+    }
+
+    /// Duration, s, of the step that the Courant number allows now; no longer than over land that is just wet. An
+    /// [`advance`](ShallowWater::advance) by it is one step.
+    pub fn next_step(&mut self) -> f64 {
+        let Forcing { entering, longest_step, .. } = self.forcing();
+        let signal = self.courant * self.cell_size / self.fastest.max(entering).max(SLOWEST);
+        // A hair less, so that rounding makes no two steps of it.
+        0.9999 * f64::from(signal.min(longest_step))
     }
 
     /// Takes one step of at most `most` (s), which the Courant number may shorten. Returns its duration, s.
@@ -93,6 +105,29 @@ impl ShallowWater {
         self.balance.rain += rain * cell * cell;
         if !self.rates.is_empty() {
             self.balance.sources += (tally.given - rain) * cell * cell;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Grid;
+    use glam::{Vec2, uvec2};
+
+    #[test]
+    fn the_next_step_is_one_step_and_as_long_as_the_courant_number_allows() {
+        let bed = Grid::new(uvec2(30, 20), 0.5, vec![-1.0; 600]).expect("a valid shape");
+        let mut water = ShallowWater::new(&bed).expect("a finite bed");
+        // Over dry land it is that on water of 1 mm.
+        assert!((water.next_step() - 0.9999 * 0.45 * 0.5 / 0.1).abs() < 1e-6);
+        water.set_water(|at, _| (if at.x < 0.0 { 1.5 } else { 0.2 }, Vec2::ZERO)).expect("sane water");
+        for _ in 0..100 {
+            let step = water.next_step();
+            let allowed = 0.45 * 0.5 / f64::from(water.fastest_signal());
+            assert!((step / allowed - 0.9999).abs() < 1e-6, "{step} s of {allowed} s");
+            let advance = water.advance(step, 9);
+            assert_eq!((advance.steps, advance.left), (1, 0.0));
         }
     }
 }

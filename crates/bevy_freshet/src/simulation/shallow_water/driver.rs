@@ -1,6 +1,7 @@
 //! Keeps the simulation of every water: makes it, changes it, advances it, and says what it has come to.
 use super::{
     ShallowFrame, ShallowWork,
+    control::{Asked, Pace},
     domain::{cells_of, ground_below, set_edges, set_walls, usable_ground},
     frame::pictures,
     on_gpu::OnGpu,
@@ -8,8 +9,8 @@ use super::{
 };
 use crate::{
     body::{
-        ResolvedBed, ResolvedWater, SimulationBackend, SimulationStart, WaterEdges, WaterSimulation, WaterSources,
-        WaterWalls,
+        ResolvedBed, ResolvedWater, SimulationBackend, SimulationStart, SimulationState, WaterEdges, WaterSimulation,
+        WaterSources, WaterWalls,
     },
     report::Reported,
     simulation::Raster,
@@ -21,9 +22,9 @@ use bevy::{
 };
 use freshet_hydro::{
     grid::Grid,
-    shallow_water::{Field, PointSource, Push, ShallowWater, ShallowWaterError},
+    shallow_water::{Advance, Field, PointSource, Push, ShallowWater, ShallowWaterError},
 };
-use std::sync::Arc;
+use std::{sync::Arc, time::Duration};
 
 /// The simulation of a water, and the pictures of it that the surface's shader reads.
 #[derive(Component, Default)]
@@ -32,6 +33,7 @@ pub(crate) struct Simulated {
     /// What bodies do to its cells.
     pub pushes: Vec<Push>,
     pub pictures: Option<[Handle<Image>; 2]>,
+    pub(super) asked: Asked,
 }
 
 /// A running simulation.
@@ -43,6 +45,9 @@ pub(super) struct Simulation {
     ground: Option<GroundKey>,
     applied: Option<Applied>,
     field: Arc<Field>,
+    /// Volume of all water, m³.
+    pub volume: f64,
+    pub pace: Pace,
     pub on_gpu: Option<OnGpu>,
 }
 
@@ -84,6 +89,7 @@ pub(super) struct Waters {
     sources: &'static WaterSources,
     walls: &'static WaterWalls,
     simulated: &'static mut Simulated,
+    state: &'static mut SimulationState,
 }
 
 impl Simulated {
@@ -124,13 +130,13 @@ pub(super) fn simulate_on_cpu(
             continue;
         };
         let duration = time.delta_secs_f64() * f64::from(speed(entity, settings, &mut reported));
-        if duration > 0.0 {
-            let advance = simulation.water.advance(duration, most_steps(entity, settings, &mut reported));
-            simulation.see(advance.time);
+        if duration > 0.0 && !settings.paused {
+            let advance = simulation.advance(duration, most_steps(entity, settings, &mut reported));
             if advance.left > 0.0 {
                 reported.warn(entity, "WaterSimulation::max_steps", "does not suffice: the water runs late");
             }
         }
+        water.state.set_if_neq(simulation.state());
     }
 }
 
@@ -148,7 +154,7 @@ pub(super) fn simulate_on_gpu(
     for mut water in &mut waters {
         prepare(&mut water, &gpu, &mut reported);
         let (entity, settings) = (water.entity, water.settings);
-        let Simulated { simulation: Some(simulation), pictures, .. } = &mut *water.simulated else {
+        let Simulated { simulation: Some(simulation), pictures, asked, .. } = &mut *water.simulated else {
             commands.entity(entity).remove::<ShallowFrame>();
             continue;
         };
@@ -160,7 +166,15 @@ pub(super) fn simulate_on_gpu(
             simulation.take_returned();
             let speed = speed(entity, settings, &mut reported);
             let steps = most_steps(entity, settings, &mut reported);
-            let work = simulation.ask(time.delta().mul_f32(speed), steps, speed);
+            let work = if !settings.paused {
+                simulation.ask(time.delta().mul_f32(speed), steps, speed)
+            } else if simulation.is_up_to_date() && asked.takes_step() {
+                let step = simulation.water.next_step();
+                simulation.ask(Duration::from_secs_f64(step), steps, 0.0)
+            } else {
+                // Nothing may be owed.
+                simulation.ask(Duration::ZERO, steps, 0.0)
+            };
             if simulation.on_gpu.as_ref().is_some_and(|gpu| gpu.late > 30) {
                 reported.warn(entity, "WaterSimulation::max_steps", "does not suffice: the water runs late");
             }
@@ -168,6 +182,7 @@ pub(super) fn simulate_on_gpu(
         } else {
             ShallowWork::Cpu(simulation.field.clone())
         };
+        water.state.set_if_neq(simulation.state());
         commands.entity(entity).insert(ShallowFrame { work, pictures: pictures.map(|picture| picture.id()) });
     }
 }
@@ -188,38 +203,30 @@ fn most_steps(entity: Entity, settings: &WaterSimulation, reported: &mut Reporte
     reported.clamp(entity, "WaterSimulation::max_steps", settings.max_steps as f32, 1.0..=4096.0, 64.0) as u32
 }
 
-/// Makes the simulation if there is none that fits, and hands it what has changed.
+/// Makes the simulation if there is none that fits, hands it what has changed, and on the CPU takes the single steps of a paused
+/// one.
 fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
     let (entity, settings, resolved) = (water.entity, water.settings, water.resolved);
+    let simulated = &mut *water.simulated;
     if resolved.half_size == Vec2::ZERO {
-        water.simulated.simulation = None;
+        simulated.simulation = None;
+        water.state.set_if_neq(default());
         return;
     }
     let cell = reported.clamp(entity, "WaterSimulation::cell_size", settings.cell_size, 1e-3..=1e5, 1.0);
     let (size, cell) = cells_of(resolved.half_size, cell);
     let made_of = MadeOf { size, cell, start: settings.start, backend: settings.backend };
-    let fits = water.simulated.simulation.as_ref().is_some_and(|simulation| simulation.made_of == made_of);
-    if !fits {
-        let ground = ground_below(resolved, settings, size, cell);
-        match Simulation::new(made_of, &ground) {
-            Ok(mut simulation) => {
-                simulation.ground = Some(GroundKey::new(resolved, settings));
-                let cells = u64::from(size.x) * u64::from(size.y);
-                let on_gpu = gpu.is_chosen(entity, settings.backend, cells, reported);
-                simulation.on_gpu = on_gpu.then(|| OnGpu::new(simulation.water.balance()));
-                water.simulated.simulation = Some(Box::new(simulation));
-            }
-            Err(error) => {
-                reported.warn(entity, "WaterSimulation", format_args!("cannot begin: {error}"));
-                water.simulated.simulation = None;
-                return;
-            }
-        }
+    let fits = simulated.simulation.as_ref().is_some_and(|simulation| simulation.made_of == made_of);
+    if simulated.asked.takes_reset() || !fits {
+        simulated.simulation = begin(made_of, entity, resolved, settings, gpu, reported);
     }
-    let Simulated { simulation: Some(simulation), pushes, .. } = &mut *water.simulated else { return };
+    let Some(simulation) = &mut simulated.simulation else {
+        water.state.set_if_neq(default());
+        return;
+    };
     // Those of a simulation of another size are none of this one.
-    if simulation.water.set_pushes(pushes).is_err() {
-        pushes.clear();
+    if simulation.water.set_pushes(&simulated.pushes).is_err() {
+        simulated.pushes.clear();
     }
     simulation.follow_ground(resolved, settings);
     let applied = Applied {
@@ -230,6 +237,41 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
         rain: settings.rain,
     };
     simulation.apply(entity, applied, reported);
+    if !settings.paused {
+        simulated.asked.forget_steps();
+    } else if simulation.on_gpu.is_none() {
+        simulation.pace.steps = 0;
+        if simulated.asked.takes_step() {
+            let step = simulation.water.next_step();
+            simulation.advance(step, 1);
+        }
+    }
+}
+
+/// A simulation at its start; nothing if it cannot begin.
+fn begin(
+    made_of: MadeOf,
+    entity: Entity,
+    resolved: &ResolvedWater,
+    settings: &WaterSimulation,
+    gpu: &UsableGpu,
+    reported: &mut Reported,
+) -> Option<Box<Simulation>> {
+    let (size, backend) = (made_of.size, made_of.backend);
+    let ground = ground_below(resolved, settings, size, made_of.cell);
+    match Simulation::new(made_of, &ground) {
+        Ok(mut simulation) => {
+            simulation.ground = Some(GroundKey::new(resolved, settings));
+            let cells = u64::from(size.x) * u64::from(size.y);
+            let on_gpu = gpu.is_chosen(entity, backend, cells, reported);
+            simulation.on_gpu = on_gpu.then(|| OnGpu::new(simulation.water.balance()));
+            Some(Box::new(simulation))
+        }
+        Err(error) => {
+            reported.warn(entity, "WaterSimulation", format_args!("cannot begin: {error}"));
+            None
+        }
+    }
 }
 
 impl GroundKey {
@@ -263,12 +305,24 @@ impl Simulation {
             })?,
         }
         let field = Arc::new(Field::new(&water, None, 0.0));
-        Ok(Self { water, made_of, flat: 0.0, ground: None, applied: None, field, on_gpu: None })
+        let volume = water.volume();
+        let pace = Pace::default();
+        Ok(Self { water, made_of, flat: 0.0, ground: None, applied: None, field, volume, pace, on_gpu: None })
     }
 
     /// The field of the newest state, `elapsed` seconds after the one before.
     pub fn see(&mut self, elapsed: f64) {
         self.field = Arc::new(Field::new(&self.water, Some(&self.field), elapsed));
+        self.volume = self.water.volume();
+    }
+
+    /// Advances it on the CPU.
+    fn advance(&mut self, duration: f64, most: u32) -> Advance {
+        let advance = self.water.advance(duration, most);
+        self.see(advance.time);
+        let step = advance.time / f64::from(advance.steps.max(1));
+        self.pace = Pace { steps: advance.steps, step, late: self.pace.late + advance.left };
+        advance
     }
 
     fn follow_ground(&mut self, resolved: &ResolvedWater, settings: &WaterSimulation) {

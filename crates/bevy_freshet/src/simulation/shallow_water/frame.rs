@@ -34,6 +34,8 @@ pub(crate) enum ShallowWork {
 #[derive(Clone, Debug)]
 pub(crate) struct GpuWork {
     pub numbers: GpuShallow,
+    /// Time asked for since the state was set, with that of this frame, s.
+    pub asked: f64,
     /// Edges of the western, eastern, northern and southern side.
     pub edges: Vec<GpuEdge>,
     /// What bodies do to the water, each cell at most once.

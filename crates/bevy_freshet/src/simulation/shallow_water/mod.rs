@@ -10,6 +10,7 @@
 //!
 //! No number of them comes from the CPU during a frame: a step for which no time is left copies the state. What they come
 //! to returns some frames later ([`returned`]), and is all that the CPU knows of the water.
+mod control;
 mod domain;
 mod driver;
 mod frame;
@@ -47,7 +48,9 @@ pub(crate) struct ShallowWaterPlugin;
 
 impl Plugin for ShallowWaterPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(FixedFirst, driver::simulate_on_cpu.before(WaterSystems::Resolve));
+        app.add_observer(control::ask_for_step)
+            .add_observer(control::ask_for_reset)
+            .add_systems(FixedFirst, driver::simulate_on_cpu.before(WaterSystems::Resolve));
         if app.get_sub_app(RenderApp).is_some() {
             let simulate = driver::simulate_on_gpu.after(TransformSystems::Propagate).before(WaterSystems::Resolve);
             app.add_plugins(StagesPlugin).add_systems(PostUpdate, simulate);

@@ -6,7 +6,10 @@ use freshet_hydro::{
     waves::GRAVITY,
 };
 use std::{
-    sync::{Arc, atomic::Ordering},
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
     time::Duration,
 };
 
@@ -32,6 +35,8 @@ pub(super) struct OnGpu {
     /// Simulated time of the newest state that came back, since then, s.
     returned: f64,
     owed: f64,
+    /// Time that had been asked for when that state was under way, s.
+    answered: f64,
     /// Late frames in a row.
     pub late: u32,
     /// Point sources of the ground that it has, m/s.
@@ -41,13 +46,19 @@ pub(super) struct OnGpu {
 impl OnGpu {
     /// The GPU before it has been asked for anything, with the book of the state that it begins with.
     pub fn new(balance: Balance) -> Self {
-        Self { start: 1, ground: 1, balance, ..default() }
+        Self { start: next_start(), ground: 1, balance, ..default() }
     }
 
     /// How much older than what was asked for the newest state is that came back, s.
     pub fn age(&self) -> f64 {
-        (self.asked - self.returned).clamp(0.0, OLDEST.into())
+        (self.asked - self.answered + self.owed).clamp(0.0, OLDEST.into())
     }
+}
+
+/// A version of a state that no water has had: what the GPU holds of one that has been replaced is not taken for the new one.
+fn next_start() -> u64 {
+    static STARTS: AtomicU64 = AtomicU64::new(1);
+    STARTS.fetch_add(1, Ordering::Relaxed)
 }
 
 impl Simulation {
@@ -56,7 +67,9 @@ impl Simulation {
         let Some(gpu) = &mut self.on_gpu else { return };
         let Some(returned) = gpu.held.take().filter(|returned| returned.start == gpu.start) else { return };
         gpu.late = if returned.owed > 1e-4 && returned.steps > 0 { gpu.late + 1 } else { 0 };
-        gpu.owed = returned.owed;
+        (gpu.owed, gpu.answered) = (returned.owed, returned.asked);
+        self.pace.steps = returned.steps;
+        self.pace.late = (returned.asked - returned.time).max(0.0);
         if returned.time <= gpu.returned {
             return;
         }
@@ -71,6 +84,13 @@ impl Simulation {
         self.see(elapsed);
     }
 
+    /// Whether the GPU holds its state, and owes nothing that it was asked for.
+    pub fn is_up_to_date(&self) -> bool {
+        self.on_gpu.as_ref().is_some_and(|gpu| {
+            gpu.held.start.load(Ordering::Relaxed) == gpu.start && gpu.answered == gpu.asked && gpu.owed <= 0.0
+        })
+    }
+
     /// What the GPU is asked to do for a frame of this duration.
     pub fn ask(&mut self, duration: Duration, most: u32, speed: f32) -> GpuWork {
         let forcing = self.water.forcing();
@@ -80,15 +100,18 @@ impl Simulation {
         // A lost device takes the state with it: what came back last is the beginning of another one.
         let holds = gpu.held.start.load(Ordering::Relaxed) == gpu.start;
         if !holds && gpu.held.was_lost() {
-            gpu.start += 1;
+            gpu.start = next_start();
             gpu.began = self.water.time();
-            (gpu.asked, gpu.returned, gpu.balance) = (0.0, 0.0, self.water.balance());
+            (gpu.asked, gpu.answered, gpu.returned, gpu.balance) = (0.0, 0.0, 0.0, self.water.balance());
         }
         let added = if holds { duration.as_secs_f64() } else { 0.0 };
-        gpu.asked += added;
+        // What the GPU gets of it.
+        gpu.asked += f64::from(added as f32);
+        let asked = gpu.asked;
         let signal = f64::from(self.water.courant() * self.water.cell_size())
             / f64::from(self.water.fastest_signal().max(entering).max(1e-3));
-        let needed = (RESERVE * (added + gpu.owed) / signal.min(f64::from(longest))).ceil() + 2.0;
+        self.pace.step = signal.min(f64::from(longest));
+        let needed = (RESERVE * (added + gpu.owed) / self.pace.step).ceil() + 2.0;
         let size = self.water.size();
         let manning = self.water.manning();
         let periodic = self.water.periodic();
@@ -128,6 +151,7 @@ impl Simulation {
         });
         GpuWork {
             numbers,
+            asked,
             edges: self.water.edge_cells().map(|(kind, value)| GpuEdge { kind, value }).collect(),
             pushes: pushes(&self.water),
             start,

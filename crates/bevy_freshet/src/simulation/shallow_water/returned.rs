@@ -40,6 +40,8 @@ pub(crate) struct Returned {
     pub start: u64,
     /// Simulated time since then, s.
     pub time: f64,
+    /// Time that it had been asked for since then, s.
+    pub asked: f64,
     /// Time that was owed, s.
     pub owed: f64,
     /// Steps of the frame.
@@ -138,7 +140,7 @@ pub(super) fn map_copies(mut states: Query<(&mut ShallowState, &super::ShallowFr
         let Some(buffer) = state.copies.filled.take() else { continue };
         let super::ShallowWork::Gpu(work) = &frame.work else { continue };
         let (parts, start, has_sources) = (Parts::of(&state), state.start, work.has_sources);
-        let (free, held) = (state.copies.free.clone(), work.held.clone());
+        let (free, held, asked) = (state.copies.free.clone(), work.held.clone(), work.asked);
         let mapped = buffer.clone();
         buffer.slice(..).map_async(MapMode::Read, move |result| {
             // After an error the buffer belongs to a lost device.
@@ -146,7 +148,8 @@ pub(super) fn map_copies(mut states: Query<(&mut ShallowState, &super::ShallowFr
                 return;
             }
             if held.start.load(Ordering::Relaxed) == start {
-                held.put(read(&mapped.slice(..).get_mapped_range(), &parts, start, has_sources));
+                let returned = read(&mapped.slice(..).get_mapped_range(), &parts, start, has_sources);
+                held.put(Returned { asked, ..returned });
             }
             mapped.unmap();
             free.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(mapped.clone());
@@ -161,6 +164,7 @@ fn read(bytes: &[u8], parts: &Parts, start: u64, has_sources: bool) -> Returned 
     let sum = |pair: Vec2| f64::from(pair.x) + f64::from(pair.y);
     Returned {
         start,
+        asked: 0.0,
         time: sum(clock.time),
         owed: f64::from(clock.owed.x),
         steps: clock.steps,

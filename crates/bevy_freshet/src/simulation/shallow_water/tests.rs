@@ -136,6 +136,7 @@ fn work(water: &mut ShallowWater, [start, ground]: [u64; 2], added: f64, steps: 
     let extras = on_gpu::extras(water, &sources, has_walls || !sources.is_empty());
     GpuWork {
         numbers,
+        asked: 0.0,
         edges: water.edge_cells().map(|(kind, value)| GpuEdge { kind, value }).collect(),
         pushes: on_gpu::pushes(water),
         start: Some(Arc::new(StartState {
