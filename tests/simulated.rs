@@ -102,7 +102,7 @@ fn towed(push: f32, speed: f32) -> [f32; 3] {
     let water = app.world_mut().spawn(water).id();
     app.world_mut().get_mut::<Transform>(water).unwrap().rotation = turn;
     let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(Cuboid::new(2.0, 2.0, 2.0));
-    let body = app.world_mut().spawn((Mesh3d(mesh), DisturbsWater, Transform::from_xyz(0.0, LEVEL, -4.0))).id();
+    let body = app.world_mut().spawn((Mesh3d(mesh), DisturbsWater, Transform::from_xyz(0.0, LEVEL, -2.7 * speed))).id();
     for _ in 0..240 {
         app.world_mut().get_mut::<Transform>(body).unwrap().translation.z += speed / 60.0;
         run(&mut app, 1.01 / 60.0);
@@ -110,7 +110,8 @@ fn towed(push: f32, speed: f32) -> [f32; 3] {
     let z = app.world().get::<Transform>(body).unwrap().translation.z;
     let places = [1.8, -1.8].map(|offset| at(&mut app, 0.0, z + offset).unwrap().height - LEVEL);
     let highest = (0..144).map(|i| vec2((i % 12) as f32 - 5.5, (i / 12) as f32 - 5.5));
-    let highest = highest.map(|place| (at(&mut app, place.x, place.y).unwrap().height - LEVEL).abs()).fold(0.0, f32::max);
+    let highest =
+        highest.map(|place| (at(&mut app, place.x, place.y).unwrap().height - LEVEL).abs()).fold(0.0, f32::max);
     [places[0], places[1], highest]
 }
 
@@ -124,6 +125,29 @@ fn a_body_pushes_the_water_before_it() {
         let [.., highest] = towed(push, speed);
         assert!(highest < 1e-6, "push {push}, speed {speed}: {highest} m");
     }
+}
+
+#[test]
+fn a_part_of_a_water_flows_with_the_water_around_it() {
+    let mut app = server();
+    let map = freshet_hydro::grid::Grid::from_fn(uvec2(80, 24), 1.0, |_| vec2(0.8, 0.0)).unwrap();
+    let map = WaterFlow::from_map(map);
+    let area = Some(Rect::new(-12.0, -10.0, 12.0, 10.0));
+    let settings = WaterSimulation { cell_size: 0.5, area, blend: 3.0, ..default() };
+    let pose = Transform::from_xyz(0.0, LEVEL, 0.0);
+    app.world_mut().spawn((Water::new(vec2(80.0, 20.0)), WaterWaves::still(), settings, pose, map));
+    run(&mut app, 60.0);
+    let samples: Vec<_> = (-300..=300).map(|i| at(&mut app, 0.1 * i as f32, 0.3).unwrap()).collect();
+    let level = |sample: &WaterSample| sample.height - LEVEL;
+    let steepest = samples.windows(2).map(|pair| (pair[1].height - pair[0].height).abs()).fold(0.0, f32::max);
+    let highest = samples.iter().map(|sample| level(sample).abs()).fold(0.0, f32::max);
+    let off = samples.iter().map(|sample| (sample.velocity.x - 0.8).abs()).fold(0.0, f32::max);
+    println!("level within {highest} m, {steepest} m in 0.1 m, speed within {off} m/s");
+    assert!(highest < 0.03 && steepest < 2e-3 && off < 0.06);
+    // Outside it is the water of the map.
+    assert_eq!((level(&samples[0]), samples[0].velocity.x), (0.0, 0.8));
+    // It is simulated within.
+    assert!(samples[300].velocity.x != 0.8 && level(&samples[300]) != 0.0);
 }
 
 #[test]
@@ -162,7 +186,7 @@ fn what_cannot_be_simulated_is_said_once() {
 }
 
 /// A column that falls over a ridge, seen from above by its heights, one second later.
-fn falling(backend: SimulationBackend) -> (Stage, Entity) {
+fn falling(backend: SimulationBackend, area: Option<Rect>) -> (Stage, Entity) {
     let mut stage = Stage::new();
     stage.app.insert_resource(Time::<Fixed>::from_hz(60.0));
     let bed = WaterBed::from_fn(uvec2(60, 60), 0.2, |at| 0.5 * (-(at.x - 1.0).powi(2)).exp() - 1.0).unwrap();
@@ -170,7 +194,7 @@ fn falling(backend: SimulationBackend) -> (Stage, Entity) {
     let (water, waves, surface, optics) = still_water(Vec2::splat(12.0));
     let surface = WaterSurface { view: SurfaceView::Height, cell: 0.05, cells: 256, mesh_error: 0.0, ..surface };
     let start = SimulationStart::Column { at: vec2(-4.0, 0.0), half_size: vec2(3.0, 9.0), level: 0.6 };
-    let settings = WaterSimulation { cell_size: 0.2, start, backend, ..default() };
+    let settings = WaterSimulation { cell_size: 0.2, start, backend, area, blend: 1.0, ..default() };
     stage.spawn((water, waves, surface, optics, settings, Transform::from_xyz(0.0, LEVEL, 0.0)));
     let camera = stage.camera_above(vec3(0.0, LEVEL, 0.0), 6.0);
     stage.settle();
@@ -181,7 +205,7 @@ fn falling(backend: SimulationBackend) -> (Stage, Entity) {
 #[test]
 fn the_height_that_is_drawn_is_the_height_that_is_asked_for_on_both_backends() {
     let [cpu, gpu] = [SimulationBackend::Cpu, SimulationBackend::Gpu].map(|backend| {
-        let (mut stage, camera) = falling(backend);
+        let (mut stage, camera) = falling(backend, None);
         let samples = heights(&mut stage, camera, Vec2::ZERO);
         let (lowest, highest) =
             samples.iter().fold((0.0_f32, -9.0_f32), |(low, high), sample| (low.min(sample.1), high.max(sample.1)));
@@ -195,4 +219,17 @@ fn the_height_that_is_drawn_is_the_height_that_is_asked_for_on_both_backends() {
     // The backends begin to run a frame or two apart.
     let off = cpu.iter().zip(&gpu).map(|(a, b)| (a.2 - b.2).abs()).sum::<f32>() / cpu.len() as f32;
     assert!(off < 0.02, "backends differ by {off} m");
+}
+
+#[test]
+fn a_part_of_a_water_is_drawn_as_it_is_asked_for() {
+    let area = Some(Rect::new(-9.0, -1.0, 1.5, 9.0));
+    let (mut stage, camera) = falling(SimulationBackend::Cpu, area);
+    let samples = heights(&mut stage, camera, Vec2::ZERO);
+    let within = samples.iter().filter(|(place, ..)| place.x < 0.5 && place.y > 0.0).count();
+    let beyond = samples.iter().filter(|(place, ..)| place.x > 1.5 || place.y < -1.0).count();
+    assert!(within > 20 && beyond > 20, "{within} {beyond}");
+    for (place, drawn, queried) in &samples {
+        assert!((drawn - queried).abs() < 4e-3, "{place}: drawn {drawn}, queried {queried}");
+    }
 }

@@ -9,6 +9,7 @@ mod lighting;
 mod optics;
 mod resolved;
 mod running;
+mod simulated;
 mod simulation;
 mod waves;
 
@@ -21,6 +22,7 @@ pub use lighting::WaterLighting;
 pub use optics::{Fresnel, WaterOptics};
 pub(crate) use resolved::{ResolvedBed, ResolvedWater};
 pub use running::{Balance, ResetSimulation, SimulationState, StepSimulation};
+pub(crate) use simulated::{ResolvedSimulation, SimulatedArea};
 pub use simulation::{
     CLOSED, DomainSide, Edge, Series, SimulationBackend, SimulationStart, WaterEdge, WaterEdges, WaterSimulation,
     WaterSource, WaterSources, WaterWall, WaterWalls,

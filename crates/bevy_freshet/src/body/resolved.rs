@@ -1,6 +1,6 @@
 //! A water with its settings checked and its waves at one instant: what surface, query and bodies read.
 use super::{
-    Water, WaterBed, WaterFlow, WaterIce, WaterWaves,
+    ResolvedSimulation, Water, WaterBed, WaterFlow, WaterIce, WaterWaves,
     frozen::{self, IceMap, ResolvedIce},
 };
 use crate::{report::Reported, simulation::Simulated};
@@ -8,7 +8,7 @@ use bevy::{math::Affine2, prelude::*};
 use freshet_hydro::{
     grid::Grid,
     ice,
-    shallow_water::{Field, FieldSample},
+    shallow_water::FieldSample,
     waves::{self, WaveField},
 };
 use std::sync::Arc;
@@ -38,8 +38,8 @@ pub(crate) struct ResolvedWater {
     pub ice: Option<ResolvedIce>,
     /// How far the ground that simulation takes where there is no bed lies below the still level, m.
     pub flat_ground: Option<f32>,
-    /// The simulated water, if it is simulated, and how old it is, s.
-    pub simulated: Option<(Arc<Field>, f32)>,
+    /// The simulated water, if it is simulated.
+    pub simulated: Option<ResolvedSimulation>,
 }
 
 /// How far under the ground the surface of a simulated water is put where it is dry, m.
@@ -78,9 +78,28 @@ impl ResolvedWater {
         if elevation.is_nan() { f32::NEG_INFINITY } else { self.level - (bed.base + elevation) }
     }
 
-    /// The simulated water at local `place`; nothing if it is not simulated or dry.
+    /// The simulated water at local `place`, blended into the water outside its area; nothing if it is not simulated or dry.
+    ///
+    /// `simulated_at` in `ground.wgsl` is its twin.
     pub fn simulated_at(&self, place: Vec2) -> Option<FieldSample> {
-        self.simulated.as_ref().and_then(|(field, age)| field.sample(place, *age))
+        let simulated = self.simulated.as_ref()?;
+        let share = simulated.area.share(place);
+        if share >= 1.0 {
+            return simulated.sample(place);
+        }
+        let within = || simulated.sample(place).unwrap_or(FieldSample { level: self.under_ground(place), ..default() });
+        let water = if share > 0.0 { within() } else { FieldSample::default() };
+        Some(FieldSample {
+            level: share * water.level,
+            slope: share * water.slope,
+            velocity: self.mapped_current(place).lerp(water.velocity, share),
+            rising: share * water.rising,
+        })
+    }
+
+    /// Where the surface of simulated water is put at local `place` if it is dry, m over the still level.
+    fn under_ground(&self, place: Vec2) -> f32 {
+        -self.ground_depth(place).clamp(-1e5, 1e5) - DRY
     }
 
     /// How far simulation has raised the surface at local `place` over the still level, m: under the ground where it is dry.
@@ -88,8 +107,7 @@ impl ResolvedWater {
         if self.simulated.is_none() {
             return 0.0;
         }
-        let below_ground = || -self.ground_depth(place).clamp(-1e5, 1e5) - DRY;
-        self.simulated_at(place).map_or_else(below_ground, |water| water.level)
+        self.simulated_at(place).map_or_else(|| self.under_ground(place), |water| water.level)
     }
 
     /// Share of the waves' height at local `place`.
@@ -122,7 +140,7 @@ impl ResolvedWater {
     /// Bounds of the height of the surface over the still water's, m: the lowest it can be, and the highest.
     pub fn elevations(&self) -> (f32, f32) {
         let amplitude = self.waves.total_amplitude();
-        let (lowest, highest) = self.simulated.as_ref().map_or((0.0, 0.0), |(field, _)| field.levels());
+        let (lowest, highest) = self.simulated.as_ref().map_or((0.0, 0.0), ResolvedSimulation::levels);
         (lowest - amplitude - self.ice.as_ref().map_or(0.0, ResolvedIce::deepest_drop), highest + amplitude)
     }
 
@@ -142,11 +160,16 @@ impl ResolvedWater {
         if self.simulated.is_some() {
             return self.drift + self.simulated_at(place).map_or(Vec2::ZERO, |water| water.velocity);
         }
-        let Some((map, scale)) = &self.flow else { return self.drift };
-        let share = waves::shallow_fade(self.still_depth(place), WaterFlow::BANK_DEPTH);
+        self.drift + self.mapped_current(place)
+    }
+
+    /// Current of the flow map at local `place`, local xz, m/s: less over the last decimetre of still water.
+    pub fn mapped_current(&self, place: Vec2) -> Vec2 {
+        let Some((map, scale)) = &self.flow else { return Vec2::ZERO };
+        let share = waves::shallow_fade(self.ground_depth(place), WaterFlow::BANK_DEPTH);
         let mapped = map.sample(place);
         // A map may have gaps.
-        self.drift + if mapped.is_finite() { mapped * (*scale * share) } else { Vec2::ZERO }
+        if mapped.is_finite() { mapped * (*scale * share) } else { Vec2::ZERO }
     }
 }
 
@@ -190,7 +213,7 @@ pub(crate) fn resolve_waters(
             next.flow = flow.map.clone().map(|map| (map, scale));
         }
         next.bed = bed_below(&next, &beds);
-        next.simulated = simulated.and_then(Simulated::field);
+        next.simulated = simulated.and_then(Simulated::resolve);
         next.flat_ground = simulated.and_then(Simulated::flat_ground);
         if let Some((ice, mut map)) = ice {
             next.ice = frozen::resolve(entity, ice, &mut map, &next, &mut reported);

@@ -5,13 +5,12 @@ use bevy::prelude::*;
 pub use freshet_hydro::shallow_water::{CLOSED, DomainSide, Edge, Series};
 
 /// Simulates the water by the shallow-water equations: it fills, flows, floods and falls dry by itself, over the
-/// [`WaterBed`](super::WaterBed) below, and is drawn, asked and felt as it is simulated. Waves and ripples ride on it; a
-/// [`WaterFlow`](super::WaterFlow) map does not count.
+/// [`WaterBed`](super::WaterBed) below, and is drawn, asked and felt as it is simulated. Waves and ripples ride on it.
 ///
 /// What acts on it from outside are [`WaterEdges`], [`WaterSources`] and [`WaterWalls`] beside it. All levels are in metres over
 /// the water's still level, the height of its entity.
 ///
-/// Changing `cell_size` or `start`, or the water's size, begins anew; all else may change while it runs. [`SimulationState`] says
+/// Changing `cell_size`, `start` or `area`, or the water's size, begins anew; all else may change while it runs. [`SimulationState`] says
 /// how it stands, [`ResetSimulation`](super::ResetSimulation) begins anew, and while it is paused
 /// [`StepSimulation`](super::StepSimulation) takes it a step further.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
@@ -31,6 +30,12 @@ pub struct WaterSimulation {
     /// Factor on the push of bodies that [disturb water](crate::interaction::DisturbsWater), 0…10. Default 1: that of a bluff body,
     /// with a drag coefficient of 1. At 0 they push nothing.
     pub push: f32,
+    /// The part of the water that is simulated, local xz, m. Default `None`: all of it. The water around it is as it were without
+    /// simulation, still and with the current of its [`WaterFlow`](super::WaterFlow) map. Where that one enters the part or leaves it
+    /// and [`WaterEdges`] say nothing, it does so in the simulation too.
+    pub area: Option<Rect>,
+    /// Width of the strip within the rim of `area` along which the two pass into each other, m, ≥ 0. Default 4.
+    pub blend: f32,
     /// Simulated seconds in a second, 0…10⁴. Default 1.
     pub speed: f32,
     /// Most steps in a frame (on the CPU: in a fixed step), 1…4096. Default 64. If more were needed the water runs late.
@@ -84,6 +89,8 @@ impl Default for WaterSimulation {
             ground: -2.0,
             rain: 0.0,
             push: 1.0,
+            area: None,
+            blend: 4.0,
             speed: 1.0,
             max_steps: 64,
             backend: SimulationBackend::Auto,

@@ -148,8 +148,7 @@ impl Pen {
         if min.y >= highest || max.y < lowest {
             return None;
         }
-        let [field, simulation] =
-            rasters.map(|raster| raster.filter(|raster| raster.meets(min.xz(), max.xz())));
+        let [field, simulation] = rasters.map(|raster| raster.filter(|raster| raster.meets(min.xz(), max.xz())));
         let finest = [field, simulation].iter().flatten().map(|raster| raster.cell).reduce(f32::min)?;
         let waves = Lattice::over(water, min.xz(), max.xz(), HEIGHT_ERROR * finest);
         self.cut(parts, surface_from_world, &waves);

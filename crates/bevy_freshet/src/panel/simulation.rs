@@ -24,6 +24,14 @@ pub(super) const SETTINGS: Group = Group {
         row("Manning's n", "manning", [0.0, 0.2], "s/m^⅓", "Roughness of the bed; rivers have 0.025 to 0.05."),
         row("Ground", "ground", [-50.0, 50.0], "m", "Elevation where there is no bed, over the still level."),
         row("Rainfall", "rain", [0.0, 500.0], "mm/h", "Rain that adds to the water.").logarithmic(),
+        row("Push of bodies", "push", [0.0, 10.0], "", "Drag coefficient of bodies as the water feels it."),
+        row(
+            "Blend",
+            "blend",
+            [0.0, 50.0],
+            "m",
+            "Width of the rim in which it passes into water that is not simulated.",
+        ),
         row("Time factor", "speed", [0.0, 1e4], "", "Simulated seconds in a second.").logarithmic(),
         row("Most steps", "max_steps", [1.0, 4096.0], "", "In a frame; if more were needed the water runs late.")
             .logarithmic(),

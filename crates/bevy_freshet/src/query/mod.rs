@@ -82,6 +82,6 @@ fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSam
         velocity: to_world(velocity),
         depth,
         ice: water.ice_thickness(local),
-        age: water.simulated.as_ref().map_or(0.0, |(_, age)| *age),
+        age: water.simulated.as_ref().map_or(0.0, |simulated| simulated.age),
     })
 }

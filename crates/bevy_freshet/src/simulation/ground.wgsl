@@ -12,7 +12,7 @@ fn depth_at(at: vec2<f32>) -> f32 {
 }
 
 fn current_at(at: vec2<f32>) -> vec2<f32> {
-    return numbers.drift + surveyed::current(at, surveyed::still_depth(at)) * numbers.flow_scale;
+    return numbers.drift + surveyed::current(at, surveyed::still_depth(at));
 }
 
 @compute @workgroup_size(#{GROUP}, #{GROUP})

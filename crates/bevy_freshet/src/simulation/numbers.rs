@@ -30,7 +30,6 @@ pub(crate) struct GpuNumbers {
     pub drift: Vec2,
     pub absorbs: Vec4,
     pub cell: f32,
-    pub flow_scale: f32,
     pub open_below: f32,
     pub silhouettes: u32,
 
@@ -85,17 +84,12 @@ impl GpuNumbers {
             drift: water.drift,
             absorbs: window.open_sides(water.half_size),
             cell: window.cell,
-            flow_scale: match (&water.simulated, &water.flow) {
-                (Some(_), _) => 1.0,
-                (None, Some((_, scale))) => *scale,
-                (None, None) => 0.0,
-            },
             open_below: transport::OPEN_BELOW,
             dye_mixing: DYE_MIXING,
             calm_shore: foam::CALM_SHORE,
             ..default()
         };
-        let speed = water.drift.length() + fastest * numbers.flow_scale.abs();
+        let speed = water.drift.length() + fastest;
         let parts = Parts {
             rings: numbers.set_rings(entity, settings, speed, reported),
             transport: numbers.set_transport(entity, settings, speed, reported),

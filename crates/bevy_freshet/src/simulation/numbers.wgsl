@@ -8,7 +8,6 @@ struct Numbers {
     drift: vec2<f32>,           // uniform part of the current, local xz, units: m/s
     absorbs: vec4<f32>,         // 1 where the western, eastern, northern, southern rim absorbs rings, 0 where it is a wall
     cell: f32,                  // units: m
-    flow_scale: f32,            // factor on the flow map
     open_below: f32,            // still depth below which a cell lies beyond the water, units: m
     silhouettes: u32,           // cells that bodies cover
 

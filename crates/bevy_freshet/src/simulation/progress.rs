@@ -188,8 +188,11 @@ impl FieldProgress {
     ) -> Option<(FieldWork, Parts, bool)> {
         let &Settings { entity, interaction, foam, water, window, simulated } = settings;
         let fastest = match (&water.simulated, &water.flow) {
-            (Some((field, _)), _) => field.fastest(),
-            (None, Some((map, _))) => textures.fastest(map),
+            (Some(simulated), map) => {
+                let around = map.as_ref().filter(|_| simulated.area.is_part());
+                simulated.field.fastest().max(around.map_or(0.0, |(map, scale)| textures.fastest(map) * scale.abs()))
+            }
+            (None, Some((map, scale))) => textures.fastest(map) * scale.abs(),
             (None, None) => 0.0,
         };
         let (numbers, parts) = GpuNumbers::new(entity, interaction, foam, water, window, fastest, reported);
@@ -209,7 +212,7 @@ impl FieldProgress {
         }
         let work = FieldWork {
             window: *window,
-            drifts: numbers.drift != Vec2::ZERO || fastest * numbers.flow_scale != 0.0,
+            drifts: numbers.drift != Vec2::ZERO || fastest != 0.0,
             numbers,
             surface,
             bed,

@@ -16,7 +16,7 @@ struct Drift {
     first: vec2<f32>,    // local xz, units: m
     second: vec2<f32>,
     weight: vec2<f32>,   // the squares sum to one: the variance of two independent patterns stays
-    current: vec2<f32>,  // of map or simulation, without the map's factor: local xz, units: m/s
+    current: vec2<f32>,  // of map or simulation, local xz, units: m/s
 }
 
 fn drift(place: vec2<f32>, depth: f32) -> Drift {

@@ -68,7 +68,7 @@ fn cover(drift: Drift, density: f32, footprint: Footprint) -> f32 {
     if share * surface.foam_amount < 0.004 {
         return 0.0;
     }
-    let current = surface.current_scale * drift.current + surface.current_drift;
+    let current = drift.current + surface.current_drift;
     var variate = froth(drift.first, current, footprint);
     if (surface.flags & (types::FLAG_FLOW | types::FLAG_SIMULATED)) != 0u {
         let second = froth(drift.second, current, footprint);

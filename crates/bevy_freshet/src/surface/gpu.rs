@@ -78,7 +78,7 @@ pub(crate) struct GpuSurface {
 
     // For SurfaceView.
     pub current_drift: Vec2,
-    pub current_scale: f32,
+    pub flow_factor: f32,
     pub view_range: Vec2,
     pub simulated_age: f32,
 
@@ -98,6 +98,9 @@ pub(crate) struct GpuSurface {
 
     pub simulated_size: Vec2,
     pub simulated_cell: f32,
+    pub simulated_center: Vec2,
+    pub simulated_half_size: Vec2,
+    pub simulated_per_blend: Vec4,
     pub flat_depth: f32,
 }
 

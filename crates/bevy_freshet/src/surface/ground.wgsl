@@ -39,8 +39,36 @@ fn shares(t: vec2<f32>) -> vec4<f32> {
     return vec4((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
 }
 
+// Share of the simulated water at local `place`: 0 from the rim of its area on outwards.
+fn simulated_share(place: vec2<f32>) -> f32 {
+    let offset = place - surface.simulated_center;
+    let inside = surface.simulated_half_size.xxyy + vec4(offset.x, -offset.x, offset.y, -offset.y);
+    let t = select(vec4(1.0), inside * surface.simulated_per_blend, surface.simulated_per_blend > vec4(0.0));
+    return smoothstep(0.0, 1.0, min(min(t.x, t.y), min(t.z, t.w)));
+}
+
+// The simulated water at local `place`, blended into the water outside its area.
 fn simulated_at(place: vec2<f32>) -> Simulated {
-    let c = cells_around(place, surface.simulated_cell, surface.simulated_size);
+    let share = simulated_share(place);
+    if share >= 1.0 {
+        return simulated_within(place);
+    }
+    let outside = mapped_current(place, ground_depth(place));
+    if share <= 0.0 {
+        return Simulated(0.0, outside, true);
+    }
+    let water = simulated_within(place);
+    let level = select(under_ground(place), water.level, water.is_wet);
+    return Simulated(share * level, mix(outside, water.velocity, share), true);
+}
+
+// Where the surface of simulated water is put at local `place` if it is dry, over the still level, units: m.
+fn under_ground(place: vec2<f32>) -> f32 {
+    return -clamp(ground_depth(place), -1e5, 1e5) - DRY;
+}
+
+fn simulated_within(place: vec2<f32>) -> Simulated {
+    let c = cells_around(place - surface.simulated_center, surface.simulated_cell, surface.simulated_size);
     let nw = textureLoad(simulated, c.low, 0);
     let ne = textureLoad(simulated, vec2(c.high.x, c.low.y), 0);
     let sw = textureLoad(simulated, vec2(c.low.x, c.high.y), 0);
@@ -65,7 +93,7 @@ fn simulated_slope(place: vec2<f32>) -> vec2<f32> {
     if (surface.flags & types::FLAG_SIMULATED) == 0u {
         return vec2(0.0);
     }
-    let c = cells_around(place, surface.simulated_cell, surface.simulated_size);
+    let c = cells_around(place - surface.simulated_center, surface.simulated_cell, surface.simulated_size);
     var corners = array(c.low, vec2(c.high.x, c.low.y), vec2(c.low.x, c.high.y), c.high);
     var share = shares(c.t);
     var slope = vec2(0.0);
@@ -75,7 +103,7 @@ fn simulated_slope(place: vec2<f32>) -> vec2<f32> {
         slope += wet * textureLoad(simulated_slopes, corners[k], 0).xy;
         sum += wet;
     }
-    return slope / max(sum, 1e-4);
+    return slope / max(sum, 1e-4) * simulated_share(place);
 }
 
 // Depth at local `rest` without waves, m: negative on dry land, very deep without a bed or where it has no data.
@@ -89,7 +117,7 @@ fn risen(rest: vec2<f32>) -> f32 {
         return 0.0;
     }
     let water = simulated_at(rest);
-    return select(-clamp(ground_depth(rest), -1e5, 1e5) - DRY, water.level, water.is_wet);
+    return select(under_ground(rest), water.level, water.is_wet);
 }
 
 // Whether there is water at local `place`, as far as it is simulated.
@@ -97,15 +125,12 @@ fn is_wet(place: vec2<f32>) -> bool {
     return (surface.flags & types::FLAG_SIMULATED) == 0u || simulated_at(place).is_wet;
 }
 
-// Current at local `place` in water of `depth`, local xz, m/s: that of the simulation, or that of the flow map without its factor.
+// Current at local `place` in water of `depth`, local xz, m/s: that of the simulation, or that of the flow map.
 fn current(place: vec2<f32>, depth: f32) -> vec2<f32> {
     if (surface.flags & types::FLAG_SIMULATED) != 0u {
         return simulated_at(place).velocity;
     }
-    if (surface.flags & types::FLAG_FLOW) != 0u {
-        return mapped_current(place) * smoothstep(0.0, surface.bank_depth, depth);
-    }
-    return vec2(0.0);
+    return mapped_current(place, depth);
 }
 
 // How far the ground at local `rest` lies below the still level, m: very far without a bed if it is not simulated, far above where it has no data.
@@ -121,10 +146,13 @@ fn ground_depth(rest: vec2<f32>) -> f32 {
     return surface.level - (surface.bed_base + elevation);
 }
 
-// Current of the flow map at local `place`, local xz, m/s.
-fn mapped_current(place: vec2<f32>) -> vec2<f32> {
+// Current of the flow map at local `place` in still water of `depth`, local xz, m/s: less over the last decimetre.
+fn mapped_current(place: vec2<f32>, depth: f32) -> vec2<f32> {
+    if (surface.flags & types::FLAG_FLOW) == 0u {
+        return vec2(0.0);
+    }
     let c = cells_around(place, surface.flow_cell, surface.flow_size);
     let north = lerp(textureLoad(flow, c.low, 0).xy, textureLoad(flow, vec2(c.high.x, c.low.y), 0).xy, c.t.x);
     let south = lerp(textureLoad(flow, vec2(c.low.x, c.high.y), 0).xy, textureLoad(flow, c.high, 0).xy, c.t.x);
-    return lerp(north, south, c.t.y);
+    return lerp(north, south, c.t.y) * (surface.flow_factor * smoothstep(0.0, surface.bank_depth, depth));
 }

@@ -57,7 +57,11 @@ pub(crate) fn advance_ripples(
         // The fastest water drifts by a fixed share of a tile in a cycle: nothing is stretched far.
         let fastest = match (&water.simulated, &water.flow) {
             // In powers of two, as every change of the cycle shifts the patterns.
-            (Some((field, _)), _) => field.fastest().max(0.25).log2().ceil().exp2(),
+            (Some(simulated), map) => {
+                let around = map.as_ref().filter(|_| simulated.area.is_part());
+                let around = around.map_or(0.0, |(map, scale)| ground.fastest(map) * scale.abs());
+                simulated.field.fastest().max(around).max(0.25).log2().ceil().exp2()
+            }
             (None, Some((map, scale))) => ground.fastest(map) * scale.abs(),
             (None, None) => 0.0,
         };

@@ -76,7 +76,7 @@ struct Surface {
     shininess: f32,
 
     current_drift: vec2<f32>,       // uniform part of the current, local xz, units: m/s
-    current_scale: f32,             // factor on the flow map
+    flow_factor: f32,               // factor on the flow map
     view_range: vec2<f32>,          // value of the first colour of a view, and colours per unit
     simulated_age: f32,             // of the state that bodies and queries know, units: s
 
@@ -96,6 +96,9 @@ struct Surface {
 
     simulated_size: vec2<f32>,      // cells of the simulated water
     simulated_cell: f32,            // units: m
+    simulated_center: vec2<f32>,    // local xz, units: m
+    simulated_half_size: vec2<f32>, // units: m
+    simulated_per_blend: vec4<f32>, // per width of the strip along which it passes into the water outside, at low x, high x, low z, high z; units: 1/m
     flat_depth: f32,                // depth of the ground under the still level where there is no bed, units: m
 }
 

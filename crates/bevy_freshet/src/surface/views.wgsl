@@ -17,7 +17,7 @@ const ARROW_PIXELS: f32 = 24.0;
 
 // The current at local `place`, local xz, m/s.
 fn current(place: vec2<f32>, still_depth: f32) -> vec2<f32> {
-    return surface.current_drift + surface.current_scale * ground::current(place, still_depth);
+    return surface.current_drift + ground::current(place, still_depth);
 }
 
 // The fully saturated colour at `turn` (0…1) around the wheel: red, yellow, green, cyan, blue, magenta.

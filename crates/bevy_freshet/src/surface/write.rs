@@ -233,21 +233,23 @@ pub(crate) fn write_ground(
         bed_texture = Some(ground.bed(&bed.elevations, images));
     }
     gpu.current_drift = water.drift;
-    if let Some((field, age)) = &water.simulated {
-        gpu.simulated_age = *age;
-        gpu.flags |= GpuSurface::SIMULATED;
-        gpu.simulated_size = field.size().as_vec2();
-        gpu.simulated_cell = field.cell_size();
-        gpu.current_scale = 1.0;
-    } else if let Some((map, scale)) = &water.flow {
+    let is_mapped = water.simulated.as_ref().is_none_or(|simulated| simulated.area.is_part());
+    if let Some((map, scale)) = water.flow.as_ref().filter(|_| is_mapped) {
         gpu.flags |= GpuSurface::FLOW;
-        gpu.current_scale = *scale;
+        gpu.flow_factor = *scale;
         gpu.flow_cell = map.cell_size();
         gpu.flow_size = map.size().as_vec2();
         gpu.bank_depth = WaterFlow::BANK_DEPTH;
-        // The factor is folded into the time that the map's velocity acts.
-        gpu.flow_cycle *= scale;
         flow_texture = Some(ground.flow(map, images));
+    }
+    if let Some(simulated) = &water.simulated {
+        gpu.flags |= GpuSurface::SIMULATED;
+        gpu.simulated_age = simulated.age;
+        gpu.simulated_size = simulated.field.size().as_vec2();
+        gpu.simulated_cell = simulated.field.cell_size();
+        gpu.simulated_center = simulated.area.center;
+        gpu.simulated_half_size = simulated.area.half_size;
+        gpu.simulated_per_blend = simulated.area.per_blend;
     }
     (bed_texture, flow_texture)
 }

@@ -1,17 +1,62 @@
 //! The rectangle of cells that stands for a water, and the ground under it.
-use crate::body::{ResolvedBed, ResolvedWater, WaterEdges, WaterSimulation, WaterWalls};
+use crate::{
+    body::{ResolvedBed, ResolvedWater, SimulatedArea, WaterEdges, WaterSimulation, WaterWalls},
+    report::Reported,
+};
 use bevy::prelude::*;
 use freshet_hydro::{
     grid::Grid,
-    shallow_water::{DomainSide, EdgePart, ShallowWater, ShallowWaterError},
+    shallow_water::{DomainSide, Edge, EdgePart, ShallowWater, ShallowWaterError},
 };
 
 /// Most cells of a simulation.
 const MOST_CELLS: f32 = 16_777_216.0;
 /// Higher than the highest ground by this, m, the land is where the bed has no data.
 const NO_DATA_RISE: f32 = 1.0;
+/// Less than this enters nowhere, m²/s.
+const SLOWEST: f32 = 1e-4;
 /// Most samples of the bed along a side of a cell.
 const MOST_SAMPLES: f32 = 8.0;
+
+/// Where the cells of a simulation lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Domain {
+    /// Columns and rows.
+    pub size: UVec2,
+    /// Side of a cell, m.
+    pub cell: f32,
+    /// Their middle, local xz, m.
+    pub center: Vec2,
+}
+
+impl Domain {
+    /// The cells of an area, and the area that they fill.
+    pub fn new(area: SimulatedArea, cell_size: f32) -> (Self, SimulatedArea) {
+        let (size, cell) = cells_of(area.half_size, cell_size);
+        let half_size = if area.is_part() { 0.5 * cell * size.as_vec2() } else { area.half_size };
+        (Self { size, cell, center: area.center }, SimulatedArea { half_size, ..area })
+    }
+}
+
+/// The part of a water that is simulated.
+pub(super) fn usable_area(
+    entity: Entity,
+    water: &ResolvedWater,
+    settings: &WaterSimulation,
+    reported: &mut Reported,
+) -> SimulatedArea {
+    let all = SimulatedArea::all(water.half_size);
+    let Some(wanted) = settings.area else { return all };
+    let blend = reported.clamp(entity, "WaterSimulation::blend", settings.blend, 0.0..=1e4, 4.0);
+    SimulatedArea::part(wanted, water.half_size, blend).unwrap_or_else(|| {
+        reported.warn(
+            entity,
+            "WaterSimulation::area",
+            format_args!("is {wanted:?}, no part of the water; all of it is used"),
+        );
+        all
+    })
+}
 
 /// Columns, rows and the side of a cell (m) of a water: as many whole cells as fit best, fewer and larger ones if they were
 /// more than can be simulated.
@@ -27,7 +72,8 @@ pub(super) fn usable_ground(settings: &WaterSimulation) -> f32 {
 }
 
 /// Elevations of the ground over the still level (m), each the mean over its cell.
-pub(super) fn ground_below(water: &ResolvedWater, settings: &WaterSimulation, size: UVec2, cell: f32) -> Grid<f32> {
+pub(super) fn ground_below(water: &ResolvedWater, settings: &WaterSimulation, domain: &Domain) -> Grid<f32> {
+    let &Domain { size, cell, center } = domain;
     let Some(bed) = &water.bed else {
         let flat = usable_ground(settings);
         return Grid::from_fn(size, cell, |_| flat).expect("a water has cells");
@@ -37,7 +83,7 @@ pub(super) fn ground_below(water: &ResolvedWater, settings: &WaterSimulation, si
     let samples = (2.0 * cell / bed.elevations.cell_size()).ceil().clamp(1.0, MOST_SAMPLES) as u32;
     let middle = size.as_vec2() / 2.0;
     let mean = |at: UVec2| {
-        let place = (at.as_vec2() - middle) * cell;
+        let place = center + (at.as_vec2() - middle) * cell;
         mean_elevation(bed, place, cell, samples).unwrap_or(highest + NO_DATA_RISE) + base
     };
     Grid::from_fn(size, cell, mean).expect("a water has cells")
@@ -66,15 +112,46 @@ pub(super) fn cells_of_part(water: &ShallowWater, side: DomainSide, from: f32, t
     if from.is_nan() || to.is_nan() || first == last { None } else { Some(EdgePart::Cells(first..last)) }
 }
 
-/// Sets what is outside the sides; the error is that of the first part that is refused.
-pub(super) fn set_edges(water: &mut ShallowWater, edges: &WaterEdges) -> Result<(), ShallowWaterError> {
+/// Sets what is outside the sides where nothing else is said: walls, but towards the water around it what flows in there, and
+/// still water elsewhere.
+pub(super) fn set_rims(
+    water: &mut ShallowWater,
+    area: &SimulatedArea,
+    around: &ResolvedWater,
+) -> Result<(), ShallowWaterError> {
+    for (side, per_blend) in DomainSide::ALL.into_iter().zip(area.per_blend.to_array()) {
+        water.set_edge(side, EdgePart::All, default())?;
+        if per_blend <= 0.0 {
+            continue;
+        }
+        let (inwards, count) = match side {
+            DomainSide::West => (Vec2::X, water.size().y),
+            DomainSide::East => (Vec2::NEG_X, water.size().y),
+            DomainSide::North => (Vec2::Y, water.size().x),
+            DomainSide::South => (Vec2::NEG_Y, water.size().x),
+        };
+        for cell in 0..count {
+            let along = (cell as f32 + 0.5) * water.cell_size() - area.half_size.dot(inwards.yx().abs());
+            let place = area.center - inwards * area.half_size + inwards.yx().abs() * along;
+            let entering = around.mapped_current(place).dot(inwards) * around.ground_depth(place).clamp(0.0, 1e5);
+            let edge = if entering > SLOWEST {
+                Edge::Discharge((entering * water.cell_size()).into())
+            } else {
+                Edge::Still(0.0.into())
+            };
+            water.set_edge(side, EdgePart::Cells(cell..cell + 1), edge)?;
+        }
+    }
+    Ok(())
+}
+
+/// Sets what is outside parts of the sides; the error is that of the first part that is refused.
+pub(super) fn set_edges(water: &mut ShallowWater, edges: &WaterEdges, center: Vec2) -> Result<(), ShallowWaterError> {
     water.set_periodic(edges.periodic.x, edges.periodic.y);
     let mut result = Ok(());
-    for side in DomainSide::ALL {
-        water.set_edge(side, EdgePart::All, default())?;
-    }
     for part in &edges.parts {
-        if let Some(cells) = cells_of_part(water, part.side, part.from, part.to) {
+        let offset = if matches!(part.side, DomainSide::West | DomainSide::East) { center.y } else { center.x };
+        if let Some(cells) = cells_of_part(water, part.side, part.from - offset, part.to - offset) {
             result = result.and(water.set_edge(part.side, cells, part.edge.clone()));
         }
     }
@@ -82,11 +159,11 @@ pub(super) fn set_edges(water: &mut ShallowWater, edges: &WaterEdges) -> Result<
 }
 
 /// Puts walls on the faces of cells, along the staircase next to each line.
-pub(super) fn set_walls(water: &mut ShallowWater, walls: &WaterWalls) -> Result<(), ShallowWaterError> {
+pub(super) fn set_walls(water: &mut ShallowWater, walls: &WaterWalls, center: Vec2) -> Result<(), ShallowWaterError> {
     water.clear_walls();
     let mut result = Ok(());
     for wall in &walls.walls {
-        let cells = |place: Vec2| place / water.cell_size() + water.size().as_vec2() / 2.0;
+        let cells = |place: Vec2| (place - center) / water.cell_size() + water.size().as_vec2() / 2.0;
         let (from, to) = (cells(wall.from), cells(wall.to));
         if !(from.is_finite() && to.is_finite()) {
             continue;

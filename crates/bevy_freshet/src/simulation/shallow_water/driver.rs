@@ -2,15 +2,15 @@
 use super::{
     ShallowFrame, ShallowWork,
     control::{Asked, Pace},
-    domain::{cells_of, ground_below, set_edges, set_walls, usable_ground},
+    domain::{Domain, ground_below, set_edges, set_rims, set_walls, usable_area, usable_ground},
     frame::pictures,
     on_gpu::OnGpu,
     usable::UsableGpu,
 };
 use crate::{
     body::{
-        ResolvedBed, ResolvedWater, SimulationBackend, SimulationStart, SimulationState, WaterEdges, WaterSimulation,
-        WaterSources, WaterWalls,
+        ResolvedBed, ResolvedSimulation, ResolvedWater, SimulatedArea, SimulationBackend, SimulationStart,
+        SimulationState, WaterEdges, WaterSimulation, WaterSources, WaterWalls,
     },
     report::Reported,
     simulation::Raster,
@@ -40,6 +40,7 @@ pub(crate) struct Simulated {
 pub(super) struct Simulation {
     pub water: ShallowWater,
     made_of: MadeOf,
+    area: SimulatedArea,
     /// Elevation of the ground where there is no bed, m.
     flat: f32,
     ground: Option<GroundKey>,
@@ -54,8 +55,7 @@ pub(super) struct Simulation {
 /// What a simulation begins anew for.
 #[derive(Clone, Debug, PartialEq)]
 struct MadeOf {
-    size: UVec2,
-    cell: f32,
+    domain: Domain,
     start: SimulationStart,
     backend: SimulationBackend,
 }
@@ -74,6 +74,8 @@ struct Applied {
     edges: WaterEdges,
     sources: WaterSources,
     walls: WaterWalls,
+    /// Which map flows around it, and its factor.
+    around: Option<(usize, f32)>,
     manning: f32,
     rain: f32,
 }
@@ -100,16 +102,16 @@ impl Simulated {
 
     /// The cells of the simulation.
     pub fn raster(&self) -> Option<Raster> {
-        let water = &self.simulation.as_ref()?.water;
+        let Simulation { water, area, .. } = self.simulation.as_deref()?;
         let (cell, size) = (water.cell_size(), water.size());
-        Some(Raster { origin: -0.5 * cell * size.as_vec2(), cell, size })
+        Some(Raster { origin: area.center - 0.5 * cell * size.as_vec2(), cell, size })
     }
 
-    /// The newest state, and its age in seconds.
-    pub fn field(&self) -> Option<(Arc<Field>, f32)> {
+    /// The newest state.
+    pub fn resolve(&self) -> Option<ResolvedSimulation> {
         let simulation = self.simulation.as_ref()?;
-        let age = simulation.on_gpu.as_ref().map_or(0.0, OnGpu::age);
-        Some((simulation.field.clone(), age as f32))
+        let age = simulation.on_gpu.as_ref().map_or(0.0, OnGpu::age) as f32;
+        Some(ResolvedSimulation { field: simulation.field.clone(), age, area: simulation.area })
     }
 }
 
@@ -161,7 +163,7 @@ pub(super) fn simulate_on_gpu(
         if device.is_none() {
             continue;
         }
-        let pictures = pictures_of(pictures, simulation.made_of.size, &mut images);
+        let pictures = pictures_of(pictures, simulation.made_of.domain.size, &mut images);
         let work = if simulation.on_gpu.is_some() {
             simulation.take_returned();
             let speed = speed(entity, settings, &mut reported);
@@ -214,8 +216,9 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
         return;
     }
     let cell = reported.clamp(entity, "WaterSimulation::cell_size", settings.cell_size, 1e-3..=1e5, 1.0);
-    let (size, cell) = cells_of(resolved.half_size, cell);
-    let made_of = MadeOf { size, cell, start: settings.start, backend: settings.backend };
+    let area = usable_area(entity, resolved, settings, reported);
+    let (domain, area) = Domain::new(area, cell);
+    let made_of = MadeOf { domain, start: settings.start, backend: settings.backend };
     let fits = simulated.simulation.as_ref().is_some_and(|simulation| simulation.made_of == made_of);
     if simulated.asked.takes_reset() || !fits {
         simulated.simulation = begin(made_of, entity, resolved, settings, gpu, reported);
@@ -228,15 +231,18 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
     if simulation.water.set_pushes(&simulated.pushes).is_err() {
         simulated.pushes.clear();
     }
+    simulation.area = area;
     simulation.follow_ground(resolved, settings);
+    let around = resolved.flow.as_ref().filter(|_| area.is_part());
     let applied = Applied {
+        around: around.map(|(map, scale)| (Arc::as_ptr(map) as usize, *scale)),
         edges: water.edges.clone(),
         sources: water.sources.clone(),
         walls: water.walls.clone(),
         manning: settings.manning,
         rain: settings.rain,
     };
-    simulation.apply(entity, applied, reported);
+    simulation.apply(entity, applied, resolved, reported);
     if !settings.paused {
         simulated.asked.forget_steps();
     } else if simulation.on_gpu.is_none() {
@@ -257,8 +263,8 @@ fn begin(
     gpu: &UsableGpu,
     reported: &mut Reported,
 ) -> Option<Box<Simulation>> {
-    let (size, backend) = (made_of.size, made_of.backend);
-    let ground = ground_below(resolved, settings, size, made_of.cell);
+    let (size, backend) = (made_of.domain.size, made_of.backend);
+    let ground = ground_below(resolved, settings, &made_of.domain);
     match Simulation::new(made_of, &ground) {
         Ok(mut simulation) => {
             simulation.ground = Some(GroundKey::new(resolved, settings));
@@ -300,14 +306,15 @@ impl Simulation {
             SimulationStart::Still => water.fill(0.0)?,
             SimulationStart::Dry => {}
             SimulationStart::Column { at, half_size, level } => water.set_water(|place, bed| {
-                let is_inside = (place - at).abs().cmple(half_size).all();
+                let is_inside = (place + made_of.domain.center - at).abs().cmple(half_size).all();
                 (if is_inside { (level - bed).max(0.0) } else { 0.0 }, Vec2::ZERO)
             })?,
         }
         let field = Arc::new(Field::new(&water, None, 0.0));
         let volume = water.volume();
         let pace = Pace::default();
-        Ok(Self { water, made_of, flat: 0.0, ground: None, applied: None, field, volume, pace, on_gpu: None })
+        let area = SimulatedArea::default();
+        Ok(Self { water, made_of, area, flat: 0.0, ground: None, applied: None, field, volume, pace, on_gpu: None })
     }
 
     /// The field of the newest state, `elapsed` seconds after the one before.
@@ -331,11 +338,15 @@ impl Simulation {
         if self.ground.as_ref() == Some(&key) {
             return;
         }
-        let ground = ground_below(resolved, settings, self.made_of.size, self.made_of.cell);
+        let ground = ground_below(resolved, settings, &self.made_of.domain);
         // A bed that the simulation refuses leaves the one that it has.
         if self.water.set_bed(&ground).is_ok() {
             self.new_ground();
             self.see(0.0);
+            if self.area.is_part() {
+                // What flows in from around it depends on its depth.
+                self.applied = None;
+            }
         }
         self.ground = Some(key);
     }
@@ -347,7 +358,7 @@ impl Simulation {
     }
 
     /// Hands over edges, sources, walls and numbers that have changed.
-    fn apply(&mut self, entity: Entity, wanted: Applied, reported: &mut Reported) {
+    fn apply(&mut self, entity: Entity, wanted: Applied, resolved: &ResolvedWater, reported: &mut Reported) {
         if self.applied.as_ref() == Some(&wanted) {
             return;
         }
@@ -357,17 +368,19 @@ impl Simulation {
                 reported.warn(entity, field, format_args!("is refused: {error}"));
             }
         };
-        refuse("WaterEdges", set_edges(&mut self.water, &wanted.edges));
+        let center = self.made_of.domain.center;
+        let rims = set_rims(&mut self.water, &self.area, resolved);
+        refuse("WaterEdges", rims.and(set_edges(&mut self.water, &wanted.edges, center)));
         refuse("WaterSimulation::manning", self.water.set_manning(wanted.manning));
         // mm/h to m/s
         refuse("WaterSimulation::rain", self.water.set_rain(wanted.rain / 3.6e6));
         if before.as_ref().is_none_or(|before| before.walls != wanted.walls) {
-            refuse("WaterWalls", set_walls(&mut self.water, &wanted.walls));
+            refuse("WaterWalls", set_walls(&mut self.water, &wanted.walls, center));
             self.new_ground();
         }
         if before.as_ref().is_none_or(|before| before.sources != wanted.sources) {
             let source = |source: &crate::body::WaterSource| PointSource {
-                at: source.at,
+                at: source.at - center,
                 radius: source.radius,
                 rate: source.rate.clone(),
             };
