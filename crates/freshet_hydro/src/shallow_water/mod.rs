@@ -6,6 +6,7 @@ mod edge;
 mod edges;
 mod exchange;
 mod field;
+mod rows;
 mod scheme;
 mod series;
 mod source;
