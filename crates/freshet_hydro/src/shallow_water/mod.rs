@@ -28,7 +28,7 @@ use glam::{UVec2, Vec2};
 use scheme::{DEEPEST, FASTEST, per_depth, sane};
 use source::Footprint;
 use std::ops::Range;
-use step::{BAND, Crests, Rows, State};
+use step::{Crests, Rows, State};
 use thiserror::Error;
 
 /// Why a domain cannot be simulated, or a change to it was refused. Nothing has changed then.
@@ -135,7 +135,7 @@ impl ShallowWater {
             rain: 0.0.into(),
             sources: Vec::new(),
             rates: Vec::new(),
-            rows: vec![Rows::default(); rows.div_ceil(BAND)],
+            rows: vec![Rows::default(); rows.div_ceil(step::band(rows))],
             fastest: 0.0,
             time: 0.0,
             balance: Balance::default(),

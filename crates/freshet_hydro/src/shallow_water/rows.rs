@@ -4,7 +4,7 @@ use super::scheme::{Flux, Side};
 /// Cells that a loop takes at once. Their number is fixed, so that the compiler knows that blocks do not overlap.
 pub(super) const LANES: usize = 16;
 /// Most columns of a strip, so that its rows stay in the processor's nearest caches.
-pub(super) const COLUMNS: usize = 512;
+pub(super) const COLUMNS: usize = 1024;
 /// Where the own cells of a strip begin in its rows: after a block for the cells west of it, and room for their neighbours.
 pub(super) const FIRST: usize = 2 * LANES;
 /// Values in a row: room, a block of cells beyond, the strip, and the same in the east.
@@ -25,25 +25,18 @@ pub(super) fn block_mut(values: &mut Values, at: usize) -> &mut Block {
     values[at..].first_chunk_mut().expect("rows have room for the last block")
 }
 
-/// The block of a grid's values that begins at `at`, with zeros after the last one.
+/// The whole blocks of `values`, and the rest.
 #[inline(always)]
-pub(super) fn read(values: &[f32], at: usize) -> Block {
-    let rest = &values[at..];
-    rest.first_chunk().copied().unwrap_or_else(|| {
-        let mut block = [0.0; LANES];
-        block[..rest.len()].copy_from_slice(rest);
-        block
-    })
+pub(super) fn blocks(values: &[f32]) -> (&[Block], &[f32]) {
+    values.as_chunks()
 }
 
-/// Writes the block of a grid's values that begins at `at`, but not beyond the end of `values`.
+/// A block that begins with these values; zeros follow.
 #[inline(always)]
-pub(super) fn write(values: &mut [f32], at: usize, block: &Block) {
-    let rest = &mut values[at..];
-    match rest.first_chunk_mut() {
-        Some(whole) => *whole = *block,
-        None => rest.copy_from_slice(&block[..rest.len()]),
-    }
+pub(super) fn padded(values: &[f32]) -> Block {
+    let mut block = [0.0; LANES];
+    block[..values.len()].copy_from_slice(values);
+    block
 }
 
 /// Rows of bed (m), depth (m), level (m) and the velocity (m/s) along and across the row.
@@ -54,6 +47,8 @@ pub(super) struct Cells {
     pub level: Values,
     pub u: Values,
     pub v: Values,
+    /// See [`slowed_by_friction`](super::scheme::slowed_by_friction), for half a step.
+    pub slowed: Values,
 }
 
 /// Rows of what is at one side of faces.
@@ -99,7 +94,7 @@ const ZEROS: Values = [0.0; SPAN];
 
 impl Default for Cells {
     fn default() -> Self {
-        Self { bed: ZEROS, depth: ZEROS, level: ZEROS, u: ZEROS, v: ZEROS }
+        Self { bed: ZEROS, depth: ZEROS, level: ZEROS, u: ZEROS, v: ZEROS, slowed: [1.0; SPAN] }
     }
 }
 

@@ -1,7 +1,7 @@
 //! One step of the whole domain: bands of rows side by side, in each band strips of columns, row after row.
 use super::{
     edge::{self, DomainSide, EdgeCell},
-    rows::{COLUMNS, Cells, FIRST, Faces, Fluxes, Kept, LANES, SPAN},
+    rows::{COLUMNS, Cells, FIRST, Faces, Fluxes, Kept, LANES, SPAN, Values},
     scheme::Flux,
     strip::{Beside, Met, Numbers, Surroundings},
 };
@@ -9,8 +9,11 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Rows of a band. The same for every number of threads, so that sums over a band are too.
-pub(super) const BAND: usize = 64;
+/// Rows of a band of a domain with so many. They do not depend on the number of threads, so that sums over a band do not either.
+/// Small domains have lower bands, so that they have more than one.
+pub(super) fn band(rows: usize) -> usize {
+    if rows <= 128 { 32 } else { 64 }
+}
 
 /// The conserved numbers of all cells, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +57,7 @@ pub(super) struct Tally {
 }
 
 /// Rows that a band works on, as many of each as are needed at once. They begin at cache lines, and so do their blocks.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 #[repr(align(64))]
 pub(super) struct Rows {
     cells: [Cells; 3],
@@ -62,7 +65,23 @@ pub(super) struct Rows {
     kept: [Kept; 2],
     x: Fluxes,
     z: [Fluxes; 2],
+    /// The point sources of the row at hand, m/s.
+    sources: Values,
     tally: Tally,
+}
+
+impl Default for Rows {
+    fn default() -> Self {
+        Self {
+            cells: Default::default(),
+            faces: Faces::default(),
+            kept: Default::default(),
+            x: Fluxes::default(),
+            z: Default::default(),
+            sources: [0.0; SPAN],
+            tally: Tally::default(),
+        }
+    }
 }
 
 impl State {
@@ -83,7 +102,8 @@ pub(super) struct StateMut<'a> {
 /// Takes the step `numbers` from `old` to `new`.
 pub(super) fn step(new: &mut State, old: &State, around: &Surround, numbers: Numbers, rows: &mut [Rows]) -> Tally {
     let arch = Arch::new();
-    let chunk = BAND * around.size.0;
+    let band = band(around.size.1);
+    let chunk = band * around.size.0;
     let bands = (
         new.depth.par_chunks_mut(chunk),
         new.carry.par_chunks_mut(chunk),
@@ -91,9 +111,9 @@ pub(super) fn step(new: &mut State, old: &State, around: &Surround, numbers: Num
         new.discharge_z.par_chunks_mut(chunk),
         rows.par_iter_mut(),
     );
-    bands.into_par_iter().enumerate().for_each(|(band, (depth, carry, discharge_x, discharge_z, rows))| {
+    bands.into_par_iter().enumerate().for_each(|(n, (depth, carry, discharge_x, discharge_z, rows))| {
         let new = StateMut { depth, carry, discharge_x, discharge_z };
-        arch.dispatch(Band { rows, new, old, around, numbers, first: band * BAND });
+        arch.dispatch(Band { rows, new, old, around, numbers, first: n * band });
     });
     let mut total = Tally::default();
     for rows in rows.iter() {
@@ -143,10 +163,10 @@ impl Rows {
         let columns = strip.around.size.0;
         let (start, end) = (first as isize, (first + new.depth.len() / columns) as isize);
         let mut met = Met::default();
-        strip.load(&mut self.cells[slot(start - 2, 3)], start - 2);
-        strip.load(&mut self.cells[slot(start - 1, 3)], start - 1);
+        strip.load(&mut self.cells[slot(start - 2, 3)], start - 2, numbers);
+        strip.load(&mut self.cells[slot(start - 1, 3)], start - 1, numbers);
         for row in start - 1..=end {
-            strip.load(&mut self.cells[slot(row + 1, 3)], row + 1);
+            strip.load(&mut self.cells[slot(row + 1, 3)], row + 1, numbers);
             if strip.shows(row) {
                 self.reconstruct(strip, numbers, row);
             }
@@ -185,7 +205,11 @@ impl Rows {
         let (from, to) = (row as usize * columns + strip.west, at * columns + strip.west);
         let (north, south) = (&self.z[slot(row, 2)], &self.z[slot(row + 1, 2)]);
         let kept = &self.kept[slot(row, 2)];
-        let around = Surroundings { x: &self.x, north, south, kept, sources: strip.around.sources };
+        let sources = (!strip.around.sources.is_empty()).then(|| {
+            self.sources[FIRST..FIRST + strip.width].copy_from_slice(&strip.around.sources[from..from + strip.width]);
+            &self.sources
+        });
+        let around = Surroundings { x: &self.x, north, south, kept, sources };
         met.update((new, to), (strip.old, from), &around, numbers, strip.width);
         strip.tally(&mut self.tally.left, &self.x, north, south, row);
     }
@@ -232,21 +256,23 @@ impl Strip<'_> {
         inside * columns + within((self.west + k) as isize - FIRST as isize, columns, self.around.periodic.0)
     }
 
-    /// Reads the row `row`, which may lie outside the domain, with two cells beyond either end.
+    /// Reads the row `row`, which may lie outside the domain, with the cells beyond its ends that its faces need.
     #[inline(always)]
-    fn load(&self, cells: &mut Cells, row: isize) {
+    fn load(&self, cells: &mut Cells, row: isize, numbers: Numbers) {
         let (columns, rows) = self.around.size;
         let (old, bed) = (self.old, self.around.bed);
         let inside = within(row, rows, self.around.periodic.1);
-        for at in (0..self.width).step_by(LANES) {
-            cells.load(old, bed, inside * columns + self.west + at, FIRST + at);
-        }
+        cells.load(old, bed, inside * columns + self.west, self.width);
+        let (west, east) = self.goes_on();
         let end = FIRST + self.width;
-        for k in [FIRST - 2, FIRST - 1, end, end + 1] {
-            let index = self.index(k, inside);
-            cells.load_one(old, bed[index], index, k);
+        if west {
+            [FIRST - 2, FIRST - 1].into_iter().for_each(|k| cells.load_one(old, bed, self.index(k, inside), k));
+        }
+        if east {
+            [end, end + 1].into_iter().for_each(|k| cells.load_one(old, bed, self.index(k, inside), k));
         }
         self.continue_bed(cells, row, inside);
+        cells.slow(self.shown(), numbers);
     }
 
     /// Beyond its sides the bed goes on with the slope that it has there, so that a river flows out as if it went on; but not
@@ -254,28 +280,24 @@ impl Strip<'_> {
     #[inline(always)]
     fn continue_bed(&self, cells: &mut Cells, row: isize, inside: usize) {
         let (columns, rows) = self.around.size;
-        let end = FIRST + self.width;
-        let mut beyond = |k: usize, cell: usize, next: usize| {
+        let beyond = |cell: usize, next: usize| {
             let here = self.around.bed[cell];
-            if self.old.depth[next] > 0.0 {
-                cells.load_one(self.old, here + (here - self.around.bed[next]), cell, k);
-            }
+            if self.old.depth[next] > 0.0 { here + (here - self.around.bed[next]) } else { here }
         };
-        if !self.around.periodic.1 && rows > 1 && inside as isize != row {
+        let (west, east) = self.goes_on();
+        let end = FIRST + self.width;
+        if inside as isize != row && !self.around.periodic.1 && rows > 1 {
             let next = if row < 0 { 1 } else { rows - 2 };
-            for k in FIRST - 1..=end {
-                beyond(k, self.index(k, inside), self.index(k, next));
+            for k in FIRST - usize::from(west)..end + usize::from(east) {
+                cells.repeat(k, k, beyond(self.index(k, inside), self.index(k, next)));
             }
         }
-        if columns > 1 {
-            let (west, east) = self.goes_on();
-            let (first, last) = (inside * columns, (inside + 1) * columns - 1);
-            if !west {
-                beyond(FIRST - 1, first, first + 1);
-            }
-            if !east {
-                beyond(end, last, last - 1);
-            }
+        let (first, last) = (inside * columns, (inside + 1) * columns - 1);
+        if !west {
+            cells.repeat(FIRST, FIRST - 1, beyond(first, (first + 1).min(last)));
+        }
+        if !east {
+            cells.repeat(end - 1, end, beyond(last, last.saturating_sub(1).max(first)));
         }
     }
 

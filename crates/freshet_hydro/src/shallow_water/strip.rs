@@ -1,10 +1,10 @@
 //! Rows of a strip of columns: the scheme, one operation after the other along whole rows, so that the compiler turns each
 //! loop into vector instructions.
 use super::{
-    rows::{Block, Cells, FIRST, Faces, Fluxes, Kept, LANES, Sides, Values, block, block_mut, read, write},
+    rows::{Block, Cells, FIRST, Faces, Fluxes, Kept, LANES, SPAN, Sides, Values, block, block_mut, blocks, padded},
     scheme::{
-        DEEPEST, FASTEST, FILM, Side, brokenness, face_bed, half_slope, kept_by_friction, max, per_depth, riemann,
-        sane, wall,
+        DEEPEST, FASTEST, FILM, Meeting, Side, brokenness, face_bed, half_slope, kept_by_friction, max, per_depth,
+        riemann, sane, slowed_by_friction, wall,
     },
     step::{State, StateMut},
 };
@@ -35,11 +35,22 @@ fn primitive(depth: f32, (qx, qz): (f32, f32), bed: f32) -> (f32, f32, f32, f32,
 }
 
 impl Cells {
-    /// Cell `index` of a state over its `bed`, and those after it, at place `at` and following.
+    /// `width` cells of a state over its `bed`, from cell `index` on.
     #[inline(always)]
-    pub fn load(&mut self, state: &State, bed: &[f32], index: usize, at: usize) {
-        let (h, z) = (read(&state.depth, index), read(bed, index));
-        let (qx, qz) = (read(&state.discharge_x, index), read(&state.discharge_z, index));
+    pub fn load(&mut self, state: &State, bed: &[f32], index: usize, width: usize) {
+        let columns = [&state.depth, &state.discharge_x, &state.discharge_z, bed];
+        let [h, qx, qz, z] = columns.map(|values| blocks(&values[index..index + width]));
+        for n in 0..width / LANES {
+            self.load_block(FIRST + n * LANES, [&h.0[n], &qx.0[n], &qz.0[n], &z.0[n]]);
+        }
+        if !h.1.is_empty() {
+            let [h, qx, qz, z] = [h, qx, qz, z].map(|(_, rest)| padded(rest));
+            self.load_block(FIRST + width / LANES * LANES, [&h, &qx, &qz, &z]);
+        }
+    }
+
+    #[inline(always)]
+    fn load_block(&mut self, at: usize, [h, qx, qz, z]: [&Block; 4]) {
         let (bed, depth) = (block_mut(&mut self.bed, at), block_mut(&mut self.depth, at));
         let (level, u, v) = (block_mut(&mut self.level, at), block_mut(&mut self.u, at), block_mut(&mut self.v, at));
         for k in 0..LANES {
@@ -47,11 +58,37 @@ impl Cells {
         }
     }
 
-    /// Cell `index` of a state at place `k`, over this `bed`, m.
-    pub fn load_one(&mut self, state: &State, bed: f32, index: usize, k: usize) {
+    /// Slows the cells `range`. A loop of its own, for it is a long chain of operations, and the shorter the chain the more
+    /// blocks the processor works on at once.
+    #[inline(always)]
+    pub fn slow(&mut self, range: Range<usize>, numbers: Numbers) {
+        if numbers.drag <= 0.0 {
+            return;
+        }
+        for at in range.step_by(LANES) {
+            let (depth, u, v) = (block(&self.depth, at), block(&self.u, at), block(&self.v, at));
+            let slowed = block_mut(&mut self.slowed, at);
+            for k in 0..LANES {
+                let speed = (u[k] * u[k] + v[k] * v[k]).sqrt();
+                slowed[k] = slowed_by_friction(depth[k], speed, 0.5 * numbers.dt, numbers.drag);
+            }
+        }
+    }
+
+    /// Cell `index` of a state over its `bed` at place `k`.
+    #[inline(always)]
+    pub fn load_one(&mut self, state: &State, bed: &[f32], index: usize, k: usize) {
         let discharge = (state.discharge_x[index], state.discharge_z[index]);
-        let cell = primitive(state.depth[index], discharge, bed);
+        let cell = primitive(state.depth[index], discharge, bed[index]);
         (self.bed[k], self.depth[k], self.level[k], self.u[k], self.v[k]) = cell;
+    }
+
+    /// The water of place `from` at place `to`, over this `bed` (m).
+    #[inline(always)]
+    pub fn repeat(&mut self, from: usize, to: usize, bed: f32) {
+        (self.depth[to], self.u[to], self.v[to]) = (self.depth[from], self.u[from], self.v[from]);
+        self.level[to] = self.depth[to] + bed;
+        self.bed[to] = self.level[to] - self.depth[to];
     }
 }
 
@@ -111,13 +148,10 @@ impl Faces {
         for k in 0..LANES {
             v_then[k] = v[k] - step * (u[k] * vx[k] + v[k] * vz[k] + GRAVITY * lz[k]);
         }
-        if numbers.drag > 0.0 {
-            for k in 0..LANES {
-                let speed = (u_then[k] * u_then[k] + v_then[k] * v_then[k]).sqrt();
-                let kept = kept_by_friction(h[k], h[k] * speed, 0.5 * numbers.dt, numbers.drag);
-                u_then[k] *= kept;
-                v_then[k] *= kept;
-            }
+        let slowed = block(&here.slowed, at);
+        for k in 0..LANES {
+            u_then[k] *= slowed[k];
+            v_then[k] *= slowed[k];
         }
         let (u_w, u_e) = (block(&here.u, at - 1), block(&here.u, at + 1));
         let (v_n, v_s) = (block(&north.v, at), block(&south.v, at));
@@ -160,15 +194,27 @@ fn show_sides(
     beds: (&Block, &Block),
 ) {
     let (h, l) = (now.depth, now.level);
+    let [mut shown_b, mut shown_a, mut lift_b, mut lift_a] = [[0.0; LANES]; 4];
+    let mut is_deep = true;
     for k in 0..LANES {
-        let bed = now.bed[k];
-        let rises = max((beds.0[k] - bed).abs(), (beds.1[k] - bed).abs());
-        let (shown_b, lift_b) = face_bed((l[k] - ls[k]) - (h[k] - hs[k]), bed, beds.0[k], h[k] < rises);
-        let (shown_a, lift_a) = face_bed((l[k] + ls[k]) - (h[k] + hs[k]), bed, beds.1[k], h[k] < rises);
+        let rises = max((beds.0[k] - now.bed[k]).abs(), (beds.1[k] - now.bed[k]).abs());
+        is_deep &= h[k] >= rises;
+        shown_b[k] = (l[k] - ls[k]) - (h[k] - hs[k]);
+        shown_a[k] = (l[k] + ls[k]) - (h[k] + hs[k]);
+    }
+    if !is_deep {
+        for k in 0..LANES {
+            let bed = now.bed[k];
+            let rises = max((beds.0[k] - bed).abs(), (beds.1[k] - bed).abs());
+            (shown_b[k], lift_b[k]) = face_bed(shown_b[k], bed, beds.0[k], h[k] < rises);
+            (shown_a[k], lift_a[k]) = face_bed(shown_a[k], bed, beds.1[k], h[k] < rises);
+        }
+    }
+    for k in 0..LANES {
         let (h1, l1) = (h[k] + now.risen[k], l[k] + now.risen[k]);
         // The bed of a face stays where it is, also where the water would fall below it.
-        let (depth_b, level_b) = (max(h1 - hs[k], 0.0), max((l1 - ls[k]) + lift_b, shown_b));
-        let (depth_a, level_a) = (max(h1 + hs[k], 0.0), max((l1 + ls[k]) + lift_a, shown_a));
+        let (depth_b, level_b) = (max(h1 - hs[k], 0.0), max((l1 - ls[k]) + lift_b[k], shown_b[k]));
+        let (depth_a, level_a) = (max(h1 + hs[k], 0.0), max((l1 + ls[k]) + lift_a[k], shown_a[k]));
         before.0[k] = depth_b;
         before.1[k] = level_b;
         after.0[k] = depth_a;
@@ -222,17 +268,28 @@ impl Fluxes {
             let broken = (block(before.broken, at - shift), block(after.broken, at));
             let (mass, first) = (block_mut(&mut self.mass, at), block_mut(&mut self.before, at));
             let (second, along) = (block_mut(&mut self.after, at), block_mut(&mut self.tangential, at));
+            let mut is_plain = true;
             for k in 0..LANES {
-                let left = Side { depth: l.0[k], level: l.1[k], normal: l.2[k], tangential: l.3[k] };
-                let right = Side { depth: r.0[k], level: r.1[k], normal: r.2[k], tangential: r.3[k] };
-                let flux = riemann(left, right, crest(at + k), max(broken.0[k], broken.1[k]));
-                mass[k] = flux.mass;
-                first[k] = flux.before;
-                second[k] = flux.after;
-                along[k] = flux.tangential;
+                let (left, right) = (side(l, k), side(r, k));
+                let meeting = Meeting::new(left, right, crest(at + k));
+                let (flux, _, is_fan) = meeting.hllc(left.tangential, right.tangential);
+                (mass[k], first[k], second[k], along[k]) = (flux.mass, flux.before, flux.after, flux.tangential);
+                is_plain &= !is_fan & (max(broken.0[k], broken.1[k]) <= 0.0);
+            }
+            if is_plain {
+                continue;
+            }
+            for k in 0..LANES {
+                let flux = riemann(side(l, k), side(r, k), crest(at + k), max(broken.0[k], broken.1[k]));
+                (mass[k], first[k], second[k], along[k]) = (flux.mass, flux.before, flux.after, flux.tangential);
             }
         }
     }
+}
+
+#[inline(always)]
+fn side((depth, level, normal, tangential): (&Block, &Block, &Block, &Block), k: usize) -> Side {
+    Side { depth: depth[k], level: level[k], normal: normal[k], tangential: tangential[k] }
 }
 
 /// What surrounds a row of cells, and what enters it from above.
@@ -245,17 +302,25 @@ pub(super) struct Surroundings<'a> {
     pub south: &'a Fluxes,
     /// What is kept of the row.
     pub kept: &'a Kept,
-    /// What point sources add, m/s, for each cell of the domain; empty if there are none.
-    pub sources: &'a [f32],
+    /// What point sources add, m/s, if there are any.
+    pub sources: Option<&'a Values>,
 }
 
 /// What a strip of columns has met on its way down.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone)]
 pub(super) struct Met {
     /// Greatest |u| + c of every lane, m/s.
     fastest: Block,
+    /// What fell and sprang in each cell of the row, m, if there are point sources.
+    added: Values,
     /// What fell and sprang, as a sum of depths, m. Counted only if there are point sources.
     pub given: f64,
+}
+
+impl Default for Met {
+    fn default() -> Self {
+        Self { fastest: [0.0; LANES], added: [0.0; SPAN], given: 0.0 }
+    }
 }
 
 impl Met {
@@ -274,30 +339,41 @@ impl Met {
         numbers: Numbers,
         count: usize,
     ) {
-        for begin in (0..count).step_by(LANES) {
-            let places =
-                Places { at: FIRST + begin, from: index + begin, to: to + begin, count: LANES.min(count - begin) };
-            if around.sources.is_empty() {
-                self.update_block(new, old, around, numbers, &places, |_| 0.0);
-            } else {
-                let sources = read(around.sources, places.from);
-                self.update_block(new, old, around, numbers, &places, |k| sources[k]);
+        let olds = [&old.depth, &old.carry, &old.discharge_x, &old.discharge_z];
+        let [h, carry, qx, qz] = olds.map(|values| blocks(&values[index..index + count]));
+        let news = [&mut *new.depth, &mut *new.carry, &mut *new.discharge_x, &mut *new.discharge_z];
+        let [h_new, carry_new, qx_new, qz_new] = news.map(|values| values[to..to + count].as_chunks_mut::<LANES>());
+        for n in 0..count / LANES {
+            let at = FIRST + n * LANES;
+            let new = [&mut h_new.0[n], &mut carry_new.0[n], &mut qx_new.0[n], &mut qz_new.0[n]];
+            self.update_block(new, [&h.0[n], &carry.0[n], &qx.0[n], &qz.0[n]], around, numbers, at);
+        }
+        let rest = h.1.len();
+        if rest > 0 {
+            let [h, carry, qx, qz] = [h, carry, qx, qz].map(|(_, rest)| padded(rest));
+            let mut new = [[0.0; LANES]; 4];
+            let fastest = self.fastest;
+            self.update_block(new.each_mut(), [&h, &carry, &qx, &qz], around, numbers, FIRST + count - rest);
+            // What lies behind the last cell of a row is none of its own.
+            self.fastest[rest..].copy_from_slice(&fastest[rest..]);
+            for ((_, to), from) in [h_new, carry_new, qx_new, qz_new].into_iter().zip(&new) {
+                to.copy_from_slice(&from[..rest]);
             }
+        }
+        if let Some(_) = around.sources {
+            self.given += self.added[FIRST..FIRST + count].iter().map(|&given| f64::from(given)).sum::<f64>();
         }
     }
 
     #[inline(always)]
     fn update_block(
         &mut self,
-        new: &mut StateMut,
-        old: &State,
+        [h_new, carry_new, qx_new, qz_new]: [&mut Block; 4],
+        [h, carry, qx, qz]: [&Block; 4],
         around: &Surroundings,
         numbers: Numbers,
-        &Places { at, from, to, count }: &Places,
-        source: impl Fn(usize) -> f32,
+        at: usize,
     ) {
-        let (h, carry) = (read(&old.depth, from), read(&old.carry, from));
-        let (qx, qz) = (read(&old.discharge_x, from), read(&old.discharge_z, from));
         let (x, north, south) = (around.x, around.north, around.south);
         let (mass_w, after_w, along_w) = (block(&x.mass, at), block(&x.after, at), block(&x.tangential, at));
         let (mass_e, before_e, along_e) =
@@ -308,16 +384,22 @@ impl Met {
             (block(&south.mass, at), block(&south.before, at), block(&south.tangential, at));
         let (push_x, push_z) = (block(&around.kept.push_x, at), block(&around.kept.push_z, at));
         let Numbers { dt, ratio, drag, rain } = numbers;
-        let [mut given, mut h_new, mut carry_new, mut qx_new, mut qz_new, mut signal] = [[0.0; LANES]; 6];
+        let mut rate = [rain; LANES];
+        if let Some(sources) = around.sources {
+            let sources = block(sources, at);
+            for k in 0..LANES {
+                rate[k] += sources[k];
+            }
+        }
         for k in 0..LANES {
             let depth = max(sane(h[k], DEEPEST), 0.0);
             let flowed = -ratio * ((mass_e[k] - mass_w[k]) + (mass_s[k] - mass_n[k]));
             // A sink takes no more than there is.
-            let added = max(dt * (rain + source(k)), -max(depth + flowed, 0.0));
+            let added = max(dt * rate[k], -max(depth + flowed, 0.0));
+            rate[k] = added;
             // Kahan: what the sum cannot hold is carried to the next step, and so is water that left twice.
             let change = flowed + added + sane(carry[k], DEEPEST);
             let sum = max(depth + change, 0.0);
-            given[k] = added;
             h_new[k] = sum;
             carry_new[k] = change - (sum - depth);
 
@@ -331,27 +413,11 @@ impl Met {
             let kept = film * kept_by_friction(sum, (px * px + pz * pz).sqrt(), dt, drag);
             qx_new[k] = px * kept;
             qz_new[k] = pz * kept;
-            signal[k] = max(px.abs(), pz.abs()) * kept * factor + (GRAVITY * sum).sqrt();
+            let signal = max(px.abs(), pz.abs()) * kept * factor + (GRAVITY * sum).sqrt();
+            self.fastest[k] = max(signal, self.fastest[k]);
         }
-        write(&mut new.depth[..to + count], to, &h_new);
-        write(&mut new.carry[..to + count], to, &carry_new);
-        write(&mut new.discharge_x[..to + count], to, &qx_new);
-        write(&mut new.discharge_z[..to + count], to, &qz_new);
-        // What lies behind the last cell of a row is none of its own.
-        signal[count..].fill(0.0);
-        for k in 0..LANES {
-            self.fastest[k] = max(signal[k], self.fastest[k]);
-        }
-        if !around.sources.is_empty() {
-            self.given += given[..count].iter().map(|&given| f64::from(given)).sum::<f64>();
+        if around.sources.is_some() {
+            *block_mut(&mut self.added, at) = rate;
         }
     }
-}
-
-/// Where a block of cells is in a strip, in the old state and in the new one, and how many of them are cells.
-struct Places {
-    at: usize,
-    from: usize,
-    to: usize,
-    count: usize,
 }
