@@ -18,6 +18,7 @@ struct Numbers {
 struct Clock {
     fastest: array<atomic<u32>, 2>,     // |u| + c as bits, units: m/s
     owed: array<f32, 2>,                // time that no step has used yet, units: s
+    rests: array<u32, 2>,               // 1 after a step of no time: both states are the same
     dt: f32,                            // of the newest step, units: s
     steps: u32,
     time: vec2<f32>,                    // time that has been simulated, and what the first number cannot hold, units: s
