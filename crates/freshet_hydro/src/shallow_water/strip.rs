@@ -58,8 +58,8 @@ impl Cells {
         }
     }
 
-    /// Slows the cells `range`. A loop of its own, for it is a long chain of operations, and the shorter the chain the more
-    /// blocks the processor works on at once.
+    /// Finds what friction leaves the cells `range` of their speed, if there is any. A loop of its own, for it is a long chain of
+    /// operations, and a processor looks ahead over so many only: the shorter they are the more blocks it works on at once.
     #[inline(always)]
     pub fn slow(&mut self, range: Range<usize>, numbers: Numbers) {
         if numbers.drag <= 0.0 {
@@ -148,10 +148,12 @@ impl Faces {
         for k in 0..LANES {
             v_then[k] = v[k] - step * (u[k] * vx[k] + v[k] * vz[k] + GRAVITY * lz[k]);
         }
-        let slowed = block(&here.slowed, at);
-        for k in 0..LANES {
-            u_then[k] *= slowed[k];
-            v_then[k] *= slowed[k];
+        if numbers.drag > 0.0 {
+            let slowed = block(&here.slowed, at);
+            for k in 0..LANES {
+                u_then[k] *= slowed[k];
+                v_then[k] *= slowed[k];
+            }
         }
         let (u_w, u_e) = (block(&here.u, at - 1), block(&here.u, at + 1));
         let (v_n, v_s) = (block(&north.v, at), block(&south.v, at));
@@ -360,7 +362,7 @@ impl Met {
                 to.copy_from_slice(&from[..rest]);
             }
         }
-        if let Some(_) = around.sources {
+        if around.sources.is_some() {
             self.given += self.added[FIRST..FIRST + count].iter().map(|&given| f64::from(given)).sum::<f64>();
         }
     }

@@ -79,7 +79,7 @@ fn row_beyond(here: Row, next: Row) -> Row {
     );
 }
 
-@compute @workgroup_size(#{GROUP}, 1)
+@compute @workgroup_size(#{GROUP_X}, #{GROUP_Z})
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = numbers.size;
     let dt = choose_dt();

@@ -195,7 +195,7 @@ fn a_dam_break_is_that_of_the_twin() {
 #[ignore = "measures"]
 fn costs_of_steps() {
     let mut gpu = Gpu::new();
-    for size in [64, 128, 256, 512, 1024] {
+    for size in [64, 128, 256, 512, 1024, 2048] {
         let bed = Grid::from_fn(UVec2::splat(size), 1.0, |cell| -5.0 + 0.01 * cell.x as f32).expect("valid");
         let mut water = ShallowWater::new(&bed).expect("finite");
         water.set_manning(0.03).expect("sane");
