@@ -4,6 +4,7 @@ mod bench;
 mod command;
 mod river;
 mod setup;
+mod simulation;
 mod test;
 mod textures;
 

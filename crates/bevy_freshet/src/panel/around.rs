@@ -12,16 +12,22 @@ enum Kind {
     Wall,
     Open,
     Still,
+    Stream,
     Level,
     Discharge,
     Periodic,
 }
 
 impl Kind {
-    const ALL: [(Self, &str, &str); 6] = [
+    const ALL: [(Self, &str, &str); 7] = [
         (Self::Wall, "wall", "Nothing passes."),
         (Self::Open, "open", "Water leaves as it comes; none enters."),
         (Self::Still, "still", "Still water goes on outside; waves leave. Level, m over the still level."),
+        (
+            Self::Stream,
+            "stream",
+            "Water goes on outside with a speed, m/s inwards; waves leave. Level, m over the still level.",
+        ),
         (Self::Level, "level", "The level at the edge, m over the still level, whatever comes."),
         (Self::Discharge, "discharge", "This much enters, m³/s; negative: leaves."),
         (Self::Periodic, "periodic", "The water goes on at the other side."),
@@ -32,6 +38,7 @@ impl Kind {
             Edge::Wall => Self::Wall,
             Edge::Open => Self::Open,
             Edge::Still(_) => Self::Still,
+            Edge::Stream { .. } => Self::Stream,
             Edge::Level(_) => Self::Level,
             Edge::Discharge(_) => Self::Discharge,
         }
@@ -40,13 +47,14 @@ impl Kind {
     /// An edge of this kind that keeps the level of the one before.
     fn edge(self, before: &Edge) -> Edge {
         let level = match before {
-            Edge::Still(level) | Edge::Level(level) => level.clone(),
+            Edge::Still(level) | Edge::Level(level) | Edge::Stream { level, .. } => level.clone(),
             _ => 0.0.into(),
         };
         match self {
             Self::Wall | Self::Periodic => Edge::Wall,
             Self::Open => Edge::Open,
             Self::Still => Edge::Still(level),
+            Self::Stream => Edge::Stream { level, entering: 0.0.into() },
             Self::Level => Edge::Level(level),
             Self::Discharge => Edge::Discharge(0.0.into()),
         }
@@ -179,6 +187,12 @@ fn edge_value(ui: &mut Ui, edge: &mut Edge) {
     match edge {
         Edge::Still(value) | Edge::Level(value) => series(ui, value, " m", 0.01),
         Edge::Discharge(value) => series(ui, value, " m³/s", 0.1),
+        Edge::Stream { level, entering } => {
+            ui.horizontal(|ui| {
+                series(ui, level, " m", 0.01);
+                series(ui, entering, " m/s", 0.01);
+            });
+        }
         Edge::Wall | Edge::Open => {}
     }
 }

@@ -28,8 +28,8 @@ pub(crate) enum EdgeCell {
     Wall,
     /// Water leaves as it comes; none enters.
     Open,
-    /// Still water at this level, m, goes on outside for ever, so waves leave.
-    Still(f32),
+    /// Water at this level, m, goes on outside for ever with this speed, m/s, inwards, so waves leave.
+    Far { level: f32, entering: f32 },
     /// The water at the edge stands at this level, m, whatever comes.
     Level(f32),
     /// This much enters, m²/s; leaves, if negative.
@@ -45,8 +45,9 @@ pub(super) fn flux(inside: Side, edge: EdgeCell) -> Flux {
     match edge {
         EdgeCell::Open if inside.normal > 0.0 => through(inside, inside.depth, inside.normal),
         EdgeCell::Wall | EdgeCell::Open => Flux { before: wall(inside.depth, inside.normal), ..Flux::default() },
-        EdgeCell::Still(level) => {
-            let outside = Side { depth: (level - bed).max(0.0), level: level.max(bed), normal: 0.0, tangential: 0.0 };
+        EdgeCell::Far { level, entering } => {
+            let depth = (level - bed).max(0.0);
+            let outside = Side { depth, level: level.max(bed), normal: -entering, tangential: 0.0 };
             riemann(inside, outside, f32::NEG_INFINITY, 0.0)
         }
         EdgeCell::Level(level) => {

@@ -14,11 +14,22 @@ pub enum Edge {
     Open,
     /// Still water at this level, m, goes on for ever: crests and troughs leave, and the level inside tends to it.
     Still(Series),
+    /// Water at this level, m, goes on for ever with this speed, m/s, inwards (negative: outwards): the river of which this is a part.
+    /// Crests and troughs leave.
+    Stream {
+        /// Level, m.
+        level: Series,
+        /// Speed inwards, m/s.
+        entering: Series,
+    },
     /// The level at the edge is this, m, whatever comes: a tide, a reservoir. Waves are reflected.
     Level(Series),
     /// This much water enters, m³/s over the whole part, spread as critical flow would be. Negative: is taken, as far as there is any.
     Discharge(Series),
 }
+
+/// Faster, m/s, no stream enters.
+const MOST_ENTERING: f32 = 1e3;
 
 /// Part of a side.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +81,9 @@ impl Edges {
             Edge::Still(series) | Edge::Level(series) | Edge::Discharge(series) if !series.is_valid() => {
                 return Err(ShallowWaterError::Series("an edge"));
             }
+            Edge::Stream { level, entering } if !(level.is_valid() && entering.is_valid()) => {
+                return Err(ShallowWaterError::Series("an edge"));
+            }
             _ => {}
         }
         self.parts.retain(|part| part.side != side || part.cells.start < cells.start || part.cells.end > cells.end);
@@ -97,12 +111,15 @@ impl Edges {
             match &part.edge {
                 Edge::Wall => cells.fill(EdgeCell::Wall),
                 Edge::Open => cells.fill(EdgeCell::Open),
-                Edge::Still(level) | Edge::Level(level) => {
+                Edge::Still(level) | Edge::Level(level) | Edge::Stream { level, .. } => {
                     let level = level.at(time);
-                    let still = matches!(part.edge, Edge::Still(_));
-                    cells.fill(if still { EdgeCell::Still(level) } else { EdgeCell::Level(level) });
+                    let entering = if let Edge::Stream { entering, .. } = &part.edge { entering.at(time) } else { 0.0 };
+                    let entering = entering.clamp(-MOST_ENTERING, MOST_ENTERING);
+                    let is_given = matches!(part.edge, Edge::Level(_));
+                    cells.fill(if is_given { EdgeCell::Level(level) } else { EdgeCell::Far { level, entering } });
                     for k in part.cells.clone() {
-                        fastest = fastest.max(2.0 * (GRAVITY * (level - bed(k)).max(0.0)).sqrt());
+                        let celerity = (GRAVITY * (level - bed(k)).max(0.0)).sqrt();
+                        fastest = fastest.max(2.0 * celerity + entering.abs());
                     }
                 }
                 Edge::Discharge(discharge) => {

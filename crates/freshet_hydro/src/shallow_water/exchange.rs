@@ -60,14 +60,15 @@ impl ShallowWater {
     }
 
     /// The kind and the value of every cell's edge as [`ShallowWater::forcing`] has found them, of the western, eastern,
-    /// northern and southern side: 0 wall, 1 open, 2 still water at a level (m), 3 a level (m), 4 a discharge that enters (m²/s).
-    pub fn edge_cells(&self) -> impl Iterator<Item = (u32, f32)> {
+    /// northern and southern side: 0 wall, 1 open, 2 water at a level (m) that goes on with a speed inwards (m/s), 3 a level (m), 4 a
+    /// discharge that enters (m²/s).
+    pub fn edge_cells(&self) -> impl Iterator<Item = (u32, [f32; 2])> {
         self.edges.cells.iter().flatten().map(|edge| match *edge {
-            EdgeCell::Wall => (0, 0.0),
-            EdgeCell::Open => (1, 0.0),
-            EdgeCell::Still(level) => (2, level),
-            EdgeCell::Level(level) => (3, level),
-            EdgeCell::Discharge(entering) => (4, entering),
+            EdgeCell::Wall => (0, [0.0; 2]),
+            EdgeCell::Open => (1, [0.0; 2]),
+            EdgeCell::Far { level, entering } => (2, [level, entering]),
+            EdgeCell::Level(level) => (3, [level, 0.0]),
+            EdgeCell::Discharge(entering) => (4, [entering, 0.0]),
         })
     }
 

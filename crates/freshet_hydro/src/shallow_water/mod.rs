@@ -7,6 +7,7 @@ mod edges;
 mod exchange;
 mod field;
 mod push;
+mod rows;
 mod scheme;
 mod series;
 mod source;
@@ -29,7 +30,7 @@ use glam::{UVec2, Vec2};
 use scheme::{DEEPEST, FASTEST, per_depth, sane};
 use source::Footprint;
 use std::ops::Range;
-use step::{BAND, Crests, Rows, State};
+use step::{Crests, Rows, State};
 use thiserror::Error;
 
 /// Why a domain cannot be simulated, or a change to it was refused. Nothing has changed then.
@@ -138,7 +139,7 @@ impl ShallowWater {
             sources: Vec::new(),
             rates: Vec::new(),
             pushes: Vec::new(),
-            rows: vec![Rows::default(); rows.div_ceil(BAND)],
+            rows: vec![Rows::default(); rows.div_ceil(step::band(rows))],
             fastest: 0.0,
             time: 0.0,
             balance: Balance::default(),

@@ -1,15 +1,19 @@
 //! One step of the whole domain: bands of rows side by side, in each band strips of columns, row after row.
 use super::{
     edge::{self, DomainSide, EdgeCell},
+    rows::{COLUMNS, Cells, FIRST, Faces, Fluxes, Kept, LANES, SPAN, Values},
     scheme::Flux,
-    strip::{Beside, COLUMNS, Cells, Faces, Fluxes, HALO, Numbers, SPAN, StateRows, Surroundings, Updated, Values},
+    strip::{Beside, Met, Numbers, Surroundings},
 };
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Rows of a band. The same for every number of threads, so that sums over a band are too.
-pub(super) const BAND: usize = 64;
+/// Rows of a band of a domain with so many. They do not depend on the number of threads, so that sums over a band do not either.
+/// Small domains have lower bands, so that they have more than one.
+pub(super) fn band(rows: usize) -> usize {
+    if rows <= 128 { 32 } else { 64 }
+}
 
 /// The conserved numbers of all cells, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,32 +56,29 @@ pub(super) struct Tally {
     pub given: f64,
 }
 
-/// Rows that a band works on.
+/// Rows that a band works on, as many of each as are needed at once. They begin at cache lines, and so do their blocks.
 #[derive(Clone)]
+#[repr(align(64))]
 pub(super) struct Rows {
-    /// The old state, the bed and the sources of the row at hand.
-    old: StateRows,
-    bed: Values,
-    sources: Values,
     cells: [Cells; 3],
-    faces: [Faces; 2],
-    x: [Fluxes; 2],
+    faces: Faces,
+    kept: [Kept; 2],
+    x: Fluxes,
     z: [Fluxes; 2],
-    updated: Updated,
+    /// The point sources of the row at hand, m/s.
+    sources: Values,
     tally: Tally,
 }
 
 impl Default for Rows {
     fn default() -> Self {
         Self {
-            old: StateRows::default(),
-            bed: [0.0; SPAN],
-            sources: [0.0; SPAN],
             cells: Default::default(),
-            faces: Default::default(),
-            x: Default::default(),
+            faces: Faces::default(),
+            kept: Default::default(),
+            x: Fluxes::default(),
             z: Default::default(),
-            updated: Updated::default(),
+            sources: [0.0; SPAN],
             tally: Tally::default(),
         }
     }
@@ -91,39 +92,18 @@ impl State {
 }
 
 /// Part of a state that a band writes.
-struct StateMut<'a> {
-    depth: &'a mut [f32],
-    carry: &'a mut [f32],
-    discharge_x: &'a mut [f32],
-    discharge_z: &'a mut [f32],
-}
-
-impl StateRows {
-    /// Reads a part of a row of `state`, to cell `at` and following.
-    #[inline(always)]
-    fn read(&mut self, state: &State, part: Range<usize>, at: usize) {
-        let to = at..at + part.len();
-        self.depth[to.clone()].copy_from_slice(&state.depth[part.clone()]);
-        self.carry[to.clone()].copy_from_slice(&state.carry[part.clone()]);
-        self.discharge_x[to.clone()].copy_from_slice(&state.discharge_x[part.clone()]);
-        self.discharge_z[to].copy_from_slice(&state.discharge_z[part]);
-    }
-
-    /// Writes the strip to a part of a row of `state`.
-    #[inline(always)]
-    fn write(&self, state: &mut StateMut, part: Range<usize>) {
-        let from = HALO..HALO + part.len();
-        state.depth[part.clone()].copy_from_slice(&self.depth[from.clone()]);
-        state.carry[part.clone()].copy_from_slice(&self.carry[from.clone()]);
-        state.discharge_x[part.clone()].copy_from_slice(&self.discharge_x[from.clone()]);
-        state.discharge_z[part].copy_from_slice(&self.discharge_z[from]);
-    }
+pub(super) struct StateMut<'a> {
+    pub depth: &'a mut [f32],
+    pub carry: &'a mut [f32],
+    pub discharge_x: &'a mut [f32],
+    pub discharge_z: &'a mut [f32],
 }
 
 /// Takes the step `numbers` from `old` to `new`.
 pub(super) fn step(new: &mut State, old: &State, around: &Surround, numbers: Numbers, rows: &mut [Rows]) -> Tally {
     let arch = Arch::new();
-    let chunk = BAND * around.size.0;
+    let band = band(around.size.1);
+    let chunk = band * around.size.0;
     let bands = (
         new.depth.par_chunks_mut(chunk),
         new.carry.par_chunks_mut(chunk),
@@ -131,9 +111,9 @@ pub(super) fn step(new: &mut State, old: &State, around: &Surround, numbers: Num
         new.discharge_z.par_chunks_mut(chunk),
         rows.par_iter_mut(),
     );
-    bands.into_par_iter().enumerate().for_each(|(band, (depth, carry, discharge_x, discharge_z, rows))| {
+    bands.into_par_iter().enumerate().for_each(|(n, (depth, carry, discharge_x, discharge_z, rows))| {
         let new = StateMut { depth, carry, discharge_x, discharge_z };
-        arch.dispatch(Band { rows, new, old, around, numbers, first: band * BAND });
+        arch.dispatch(Band { rows, new, old, around, numbers, first: n * band });
     });
     let mut total = Tally::default();
     for rows in rows.iter() {
@@ -181,53 +161,57 @@ impl Rows {
     #[inline(always)]
     fn step_strip(&mut self, new: &mut StateMut, strip: &Strip, numbers: Numbers, first: usize) {
         let columns = strip.around.size.0;
-        let (start, count) = (first as isize, (new.depth.len() / columns) as isize);
-        let halo = HALO as isize;
-        for read in start - halo..start + count + halo {
-            strip.load(&mut self.cells[slot(read, 3)], &mut self.old, &mut self.bed, read);
-            let row = read - 1;
-            if row < start - 1 {
-                continue;
+        let (start, end) = (first as isize, (first + new.depth.len() / columns) as isize);
+        let mut met = Met::default();
+        strip.load(&mut self.cells[slot(start - 2, 3)], start - 2, numbers);
+        strip.load(&mut self.cells[slot(start - 1, 3)], start - 1, numbers);
+        for row in start - 1..=end {
+            strip.load(&mut self.cells[slot(row + 1, 3)], row + 1, numbers);
+            if strip.shows(row) {
+                self.reconstruct(strip, numbers, row);
             }
-            self.faces[slot(row, 2)].reconstruct(
-                &self.cells[slot(row - 1, 3)],
-                &self.cells[slot(row, 3)],
-                &self.cells[slot(row + 1, 3)],
-                (1, strip.width + 2 * HALO - 1),
-                numbers,
-            );
             if row < start {
                 continue;
             }
-            strip.solve_x(&mut self.x[slot(row, 2)], &self.faces[slot(row, 2)], row);
-            strip.solve_z(&mut self.z[slot(row, 2)], &self.faces[slot(row - 1, 2)], &self.faces[slot(row, 2)], row);
+            strip.solve_z(
+                &mut self.z[slot(row, 2)],
+                &self.kept[slot(row - 1, 2)],
+                &self.faces,
+                &self.kept[slot(row, 2)],
+                row,
+            );
             if row > start {
-                self.update(new, strip, numbers, row - 1, (row - 1 - start) as usize);
+                self.update(&mut met, new, strip, numbers, row - 1, (row - 1 - start) as usize);
+            }
+            if row < end {
+                strip.solve_x(&mut self.x, &self.faces, &self.kept[slot(row, 2)], row);
             }
         }
+        self.tally.fastest = self.tally.fastest.max(met.fastest());
+        self.tally.given += met.given;
+    }
+
+    #[inline(always)]
+    fn reconstruct(&mut self, strip: &Strip, numbers: Numbers, row: isize) {
+        let cells = [row - 1, row, row + 1].map(|row| &self.cells[slot(row, 3)]);
+        let kept = &mut self.kept[slot(row, 2)];
+        self.faces.reconstruct(kept, (cells[0], cells[1], cells[2]), strip.shown(), numbers);
     }
 
     /// Writes row `row` of the domain, row `at` of the band.
     #[inline(always)]
-    fn update(&mut self, new: &mut StateMut, strip: &Strip, numbers: Numbers, row: isize, at: usize) {
+    fn update(&mut self, met: &mut Met, new: &mut StateMut, strip: &Strip, numbers: Numbers, row: isize, at: usize) {
         let columns = strip.around.size.0;
-        let from = row as usize * columns + strip.west;
-        let here = from..from + strip.width;
-        self.old.read(strip.old, here.clone(), HALO);
+        let (from, to) = (row as usize * columns + strip.west, at * columns + strip.west);
+        let (north, south) = (&self.z[slot(row, 2)], &self.z[slot(row + 1, 2)]);
+        let kept = &self.kept[slot(row, 2)];
         let sources = (!strip.around.sources.is_empty()).then(|| {
-            self.sources[HALO..HALO + strip.width].copy_from_slice(&strip.around.sources[here]);
+            self.sources[FIRST..FIRST + strip.width].copy_from_slice(&strip.around.sources[from..from + strip.width]);
             &self.sources
         });
-        let (x, north, south) = (&self.x[slot(row, 2)], &self.z[slot(row, 2)], &self.z[slot(row + 1, 2)]);
-        let around = Surroundings { x, north, south, faces: &self.faces[slot(row, 2)], sources };
-        self.updated.update(&self.old, &around, numbers, strip.width);
-        let to = at * columns + strip.west;
-        self.updated.state.write(new, to..to + strip.width);
-        self.tally.fastest = self.tally.fastest.max(self.updated.fastest(strip.width));
-        if sources.is_some() {
-            self.tally.given += total(&self.updated.given[HALO..HALO + strip.width]);
-        }
-        strip.tally(&mut self.tally.left, x, north, south, row);
+        let around = Surroundings { x: &self.x, north, south, kept, sources };
+        met.update((new, to), (strip.old, from), &around, numbers, strip.width);
+        strip.tally(&mut self.tally.left, &self.x, north, south, row);
     }
 }
 
@@ -248,113 +232,129 @@ struct Strip<'a> {
 }
 
 impl Strip<'_> {
-    /// Reads the row `row`, which may lie outside the domain, with its halos.
+    /// Whether there are cells west and east of the strip.
+    fn goes_on(&self) -> (bool, bool) {
+        let wraps = self.around.periodic.0;
+        (wraps || self.west > 0, wraps || self.west + self.width < self.around.size.0)
+    }
+
+    /// Whether there are cells in this row, which may be outside the domain.
+    fn shows(&self, row: isize) -> bool {
+        self.around.periodic.1 || (row >= 0 && row < self.around.size.1 as isize)
+    }
+
+    /// Places of the cells whose faces are needed: its own and their neighbours, if there are any.
+    fn shown(&self) -> Range<usize> {
+        let (west, east) = self.goes_on();
+        FIRST - if west { LANES } else { 0 }..FIRST + self.width + usize::from(east)
+    }
+
+    /// Index of the cell at place `k` in the row `inside` the domain, or of the one that stands for it.
     #[inline(always)]
-    fn load(&self, cells: &mut Cells, state: &mut StateRows, bed: &mut Values, row: isize) {
+    fn index(&self, k: usize, inside: usize) -> usize {
+        let columns = self.around.size.0;
+        inside * columns + within((self.west + k) as isize - FIRST as isize, columns, self.around.periodic.0)
+    }
+
+    /// Reads the row `row`, which may lie outside the domain, with the cells beyond its ends that its faces need.
+    #[inline(always)]
+    fn load(&self, cells: &mut Cells, row: isize, numbers: Numbers) {
         let (columns, rows) = self.around.size;
+        let (old, bed) = (self.old, self.around.bed);
         let inside = within(row, rows, self.around.periodic.1);
-        let base = inside * columns;
-        let (west, east) = (self.west.saturating_sub(HALO), (self.west + self.width + HALO).min(columns));
-        let at = HALO + west - self.west;
-        state.read(self.old, base + west..base + east, at);
-        bed[at..at + east - west].copy_from_slice(&self.around.bed[base + west..base + east]);
-        let last = self.width + 2 * HALO;
-        for k in (0..at).chain(at + east - west..last) {
-            let column = within((self.west + k) as isize - HALO as isize, columns, self.around.periodic.0);
-            state.read(self.old, base + column..base + column + 1, k);
-            bed[k] = self.around.bed[base + column];
+        cells.load(old, bed, inside * columns + self.west, self.width);
+        let (west, east) = self.goes_on();
+        let end = FIRST + self.width;
+        if west {
+            [FIRST - 2, FIRST - 1].into_iter().for_each(|k| cells.load_one(old, bed, self.index(k, inside), k));
         }
-        self.continue_bed(bed, row, inside);
-        cells.load(state, bed, (0, last));
+        if east {
+            [end, end + 1].into_iter().for_each(|k| cells.load_one(old, bed, self.index(k, inside), k));
+        }
+        self.continue_bed(cells, row, inside);
+        cells.slow(self.shown(), numbers);
     }
 
     /// Beyond its sides the bed goes on with the slope that it has there, so that a river flows out as if it went on; but not
     /// from a bank, where still water would be drawn up.
     #[inline(always)]
-    fn continue_bed(&self, bed: &mut Values, row: isize, inside: usize) {
+    fn continue_bed(&self, cells: &mut Cells, row: isize, inside: usize) {
         let (columns, rows) = self.around.size;
         let beyond = |cell: usize, next: usize| {
             let here = self.around.bed[cell];
             if self.old.depth[next] > 0.0 { here + (here - self.around.bed[next]) } else { here }
         };
-        if !self.around.periodic.1 && rows > 1 && inside as isize != row {
-            let next = if row < 0 { columns } else { (rows - 2) * columns };
-            let part = HALO..HALO + self.width;
-            for (k, bed) in bed[part].iter_mut().enumerate() {
-                *bed = beyond(inside * columns + self.west + k, next + self.west + k);
+        let (west, east) = self.goes_on();
+        let end = FIRST + self.width;
+        if inside as isize != row && !self.around.periodic.1 && rows > 1 {
+            let next = if row < 0 { 1 } else { rows - 2 };
+            for k in FIRST - usize::from(west)..end + usize::from(east) {
+                cells.repeat(k, k, beyond(self.index(k, inside), self.index(k, next)));
             }
         }
-        if self.around.periodic.0 || columns < 2 {
-            return;
-        }
         let (first, last) = (inside * columns, (inside + 1) * columns - 1);
-        if self.west == 0 {
-            bed[HALO - 1] = beyond(first, first + 1);
+        if !west {
+            cells.repeat(FIRST, FIRST - 1, beyond(first, (first + 1).min(last)));
         }
-        if self.west + self.width == columns {
-            bed[HALO + self.width] = beyond(last, last - 1);
+        if !east {
+            cells.repeat(end - 1, end, beyond(last, last.saturating_sub(1).max(first)));
         }
     }
 
-    /// Fluxes through the eastern faces of the row, from the one west of the strip on.
+    /// Fluxes through the western faces of the row, and of the cell east of the strip.
     #[inline(always)]
-    fn solve_x(&self, x: &mut Fluxes, faces: &Faces, row: isize) {
-        let range = (HALO - 1, HALO + self.width);
-        let (columns, rows) = self.around.size;
-        let row = within(row, rows, self.around.periodic.1);
-        let before = Beside { sides: &faces.east, broken: &faces.broken };
-        let after = Beside { sides: &faces.west, broken: &faces.broken };
+    fn solve_x(&self, x: &mut Fluxes, faces: &Faces, kept: &Kept, row: isize) {
+        let end = FIRST + self.width;
+        let (west, east) = self.goes_on();
+        let range = FIRST..end + usize::from(east);
+        let row = row as usize;
+        let before = Beside { sides: &faces.east, broken: &kept.broken };
+        let after = Beside { sides: &faces.west, broken: &kept.broken };
         match self.around.crests {
             None => x.solve(before, after, 1, range, None),
             Some(crests) => {
                 let mut own = [f32::NEG_INFINITY; SPAN];
-                for (k, crest) in own.iter_mut().enumerate().take(range.1).skip(range.0) {
-                    let column = (self.west + k) as isize - HALO as isize;
-                    *crest = crests.east[row * columns + within(column, columns, self.around.periodic.0)];
+                for k in range.clone() {
+                    own[k] = crests.east[self.index(k - 1, row)];
                 }
                 x.solve(before, after, 1, range, Some(&own));
             }
         }
-        if self.around.periodic.0 {
-            return;
+        if !west {
+            let flux = edge::flux(flipped(faces.west.get(FIRST)), self.around.edges[DomainSide::West as usize][row]);
+            x.set(FIRST, backwards(flux));
         }
-        if self.west == 0 {
-            let flux = edge::flux(flipped(faces.west.get(HALO)), self.around.edges[DomainSide::West as usize][row]);
-            x.set(HALO - 1, backwards(flux));
-        }
-        if self.west + self.width == columns {
-            let last = HALO + self.width - 1;
-            x.set(last, edge::flux(faces.east.get(last), self.around.edges[DomainSide::East as usize][row]));
+        if !east {
+            x.set(end, edge::flux(faces.east.get(end - 1), self.around.edges[DomainSide::East as usize][row]));
         }
     }
 
     /// Fluxes through the northern faces of the row.
     #[inline(always)]
-    fn solve_z(&self, z: &mut Fluxes, before: &Faces, after: &Faces, row: isize) {
-        let range = (HALO, HALO + self.width);
+    fn solve_z(&self, z: &mut Fluxes, above: &Kept, faces: &Faces, kept: &Kept, row: isize) {
+        let range = FIRST..FIRST + self.width;
         let (columns, rows) = self.around.size;
         let wraps = self.around.periodic.1;
-        let north = Beside { sides: &before.south, broken: &before.broken };
-        let south = Beside { sides: &after.north, broken: &after.broken };
+        let column = |k: usize| self.west + k - FIRST;
+        if !self.shows(row - 1) {
+            let edges = &self.around.edges[DomainSide::North as usize];
+            range.for_each(|k| z.set(k, backwards(edge::flux(flipped(faces.north.get(k)), edges[column(k)]))));
+            return;
+        }
+        if !self.shows(row) {
+            let edges = &self.around.edges[DomainSide::South as usize];
+            range.for_each(|k| z.set(k, edge::flux(above.south.get(k), edges[column(k)])));
+            return;
+        }
+        let before = Beside { sides: &above.south, broken: &above.broken };
+        let after = Beside { sides: &faces.north, broken: &kept.broken };
         match self.around.crests {
-            None => z.solve(north, south, 0, range, None),
+            None => z.solve(before, after, 0, range, None),
             Some(crests) => {
                 let from = within(row - 1, rows, wraps) * columns + self.west;
                 let mut own = [f32::NEG_INFINITY; SPAN];
-                own[HALO..HALO + self.width].copy_from_slice(&crests.south[from..from + self.width]);
-                z.solve(north, south, 0, range, Some(&own));
-            }
-        }
-        if wraps {
-            return;
-        }
-        for k in range.0..range.1 {
-            let column = self.west + k - HALO;
-            if row == 0 {
-                let edge = self.around.edges[DomainSide::North as usize][column];
-                z.set(k, backwards(edge::flux(flipped(after.north.get(k)), edge)));
-            } else if row == rows as isize {
-                z.set(k, edge::flux(before.south.get(k), self.around.edges[DomainSide::South as usize][column]));
+                own[range.clone()].copy_from_slice(&crests.south[from..from + self.width]);
+                z.solve(before, after, 0, range, Some(&own));
             }
         }
     }
@@ -365,14 +365,14 @@ impl Strip<'_> {
         let (columns, rows) = self.around.size;
         if !self.around.periodic.0 {
             if self.west == 0 {
-                left[DomainSide::West as usize] -= f64::from(x.mass[HALO - 1]);
+                left[DomainSide::West as usize] -= f64::from(x.mass[FIRST]);
             }
             if self.west + self.width == columns {
-                left[DomainSide::East as usize] += f64::from(x.mass[HALO + self.width - 1]);
+                left[DomainSide::East as usize] += f64::from(x.mass[FIRST + self.width]);
             }
         }
         if !self.around.periodic.1 {
-            let sum = |fluxes: &Fluxes| total(&fluxes.mass[HALO..HALO + self.width]);
+            let sum = |fluxes: &Fluxes| total(&fluxes.mass[FIRST..FIRST + self.width]);
             if row == 0 {
                 left[DomainSide::North as usize] -= sum(north);
             }

@@ -1,89 +1,15 @@
 //! Rows of a strip of columns: the scheme, one operation after the other along whole rows, so that the compiler turns each
 //! loop into vector instructions.
-use super::scheme::{
-    DEEPEST, FASTEST, FILM, Flux, Side, brokenness, face_bed, half_slope, kept_by_friction, max, per_depth, riemann,
-    sane, wall,
+use super::{
+    rows::{Block, Cells, FIRST, Faces, Fluxes, Kept, LANES, SPAN, Sides, Values, block, block_mut, blocks, padded},
+    scheme::{
+        DEEPEST, FASTEST, FILM, Meeting, Side, brokenness, face_bed, half_slope, kept_by_friction, max, per_depth,
+        riemann, sane, slowed_by_friction, wall,
+    },
+    step::{State, StateMut},
 };
 use crate::waves::GRAVITY;
-
-/// Cells beyond a strip that its cells need.
-pub(super) const HALO: usize = 2;
-/// Most columns of a strip, so that its rows stay in the processor's nearest cache.
-pub(super) const COLUMNS: usize = 512;
-/// Values in a row: the strip, its halos, and room for the last block.
-pub(super) const SPAN: usize = COLUMNS + 2 * LANES;
-/// Cells that a loop takes at once. Their number is fixed, so that the compiler knows that blocks do not overlap.
-const LANES: usize = 16;
-
-pub(super) type Values = [f32; SPAN];
-type Block = [f32; LANES];
-
-/// The block of a row that begins at `at`.
-#[inline(always)]
-fn block(values: &Values, at: usize) -> &Block {
-    values[at..].first_chunk().expect("rows have room for the last block")
-}
-
-/// The block of a row that begins at `at`, for writing.
-#[inline(always)]
-fn block_mut(values: &mut Values, at: usize) -> &mut Block {
-    values[at..].first_chunk_mut().expect("rows have room for the last block")
-}
-
-/// Rows of depth (m), level (m) and the velocity (m/s) along and across the row.
-#[derive(Clone)]
-pub(super) struct Cells {
-    pub depth: Values,
-    pub level: Values,
-    pub u: Values,
-    pub v: Values,
-}
-
-/// Rows of what is at one side of faces.
-#[derive(Clone)]
-pub(super) struct Sides {
-    pub depth: Values,
-    pub level: Values,
-    pub normal: Values,
-    pub tangential: Values,
-}
-
-/// Rows of fluxes through faces.
-#[derive(Clone)]
-pub(super) struct Fluxes {
-    pub mass: Values,
-    pub before: Values,
-    pub after: Values,
-    pub tangential: Values,
-}
-
-/// What a row of cells shows to its faces half a step later, and how its own slope pushes it.
-#[derive(Clone)]
-pub(super) struct Faces {
-    pub west: Sides,
-    pub east: Sides,
-    pub north: Sides,
-    pub south: Sides,
-    /// g h ∂η/∂x Δx, m²/s².
-    pub push_x: Values,
-    /// g h ∂η/∂z Δx, m²/s².
-    pub push_z: Values,
-    /// See [`brokenness`].
-    pub broken: Values,
-}
-
-/// Rows of the four conserved numbers of a state.
-#[derive(Clone)]
-pub(super) struct StateRows {
-    /// Depth, m.
-    pub depth: Values,
-    /// What the depth cannot hold: rounding, and volume that left twice, m.
-    pub carry: Values,
-    /// Discharge along x, m²/s.
-    pub discharge_x: Values,
-    /// Discharge along z, m²/s.
-    pub discharge_z: Values,
-}
+use std::ops::Range;
 
 /// Numbers of one step.
 #[derive(Clone, Copy, Debug)]
@@ -98,93 +24,71 @@ pub(super) struct Numbers {
     pub rain: f32,
 }
 
-impl Default for Cells {
-    fn default() -> Self {
-        Self { depth: [0.0; SPAN], level: [0.0; SPAN], u: [0.0; SPAN], v: [0.0; SPAN] }
-    }
-}
-
-impl Default for StateRows {
-    fn default() -> Self {
-        Self { depth: [0.0; SPAN], carry: [0.0; SPAN], discharge_x: [0.0; SPAN], discharge_z: [0.0; SPAN] }
-    }
-}
-
-impl Default for Sides {
-    fn default() -> Self {
-        Self { depth: [0.0; SPAN], level: [0.0; SPAN], normal: [0.0; SPAN], tangential: [0.0; SPAN] }
-    }
-}
-
-impl Default for Fluxes {
-    fn default() -> Self {
-        Self { mass: [0.0; SPAN], before: [0.0; SPAN], after: [0.0; SPAN], tangential: [0.0; SPAN] }
-    }
-}
-
-impl Default for Faces {
-    fn default() -> Self {
-        Self {
-            west: Sides::default(),
-            east: Sides::default(),
-            north: Sides::default(),
-            south: Sides::default(),
-            push_x: [0.0; SPAN],
-            push_z: [0.0; SPAN],
-            broken: [0.0; SPAN],
-        }
-    }
-}
-
-impl Sides {
-    /// Depth, level, normal and tangential velocity of a block.
-    #[inline(always)]
-    fn block(&self, at: usize) -> (&Block, &Block, &Block, &Block) {
-        (block(&self.depth, at), block(&self.level, at), block(&self.normal, at), block(&self.tangential, at))
-    }
-
-    #[inline(always)]
-    fn block_mut(&mut self, at: usize) -> (&mut Block, &mut Block, &mut Block, &mut Block) {
-        (
-            block_mut(&mut self.depth, at),
-            block_mut(&mut self.level, at),
-            block_mut(&mut self.normal, at),
-            block_mut(&mut self.tangential, at),
-        )
-    }
-
-    pub fn get(&self, k: usize) -> Side {
-        Side { depth: self.depth[k], level: self.level[k], normal: self.normal[k], tangential: self.tangential[k] }
-    }
-}
-
-impl Fluxes {
-    pub fn set(&mut self, k: usize, flux: Flux) {
-        self.mass[k] = flux.mass;
-        self.before[k] = flux.before;
-        self.after[k] = flux.after;
-        self.tangential[k] = flux.tangential;
-    }
+/// Bed, depth, level (m) and velocity (m/s) of a cell, from its conserved numbers over its `bed`.
+#[inline(always)]
+fn primitive(depth: f32, (qx, qz): (f32, f32), bed: f32) -> (f32, f32, f32, f32, f32) {
+    let depth = max(sane(depth, DEEPEST), 0.0);
+    let factor = per_depth(depth);
+    let level = depth + bed;
+    // The bed is what is left of the sum, so that where water is still both have the same slope.
+    (level - depth, depth, level, sane(qx * factor, FASTEST), sane(qz * factor, FASTEST))
 }
 
 impl Cells {
-    /// Depth, level and velocity of the cells `range` from a row of the state over its `bed`.
+    /// `width` cells of a state over its `bed`, from cell `index` on.
     #[inline(always)]
-    pub fn load(&mut self, state: &StateRows, bed: &Values, range: (usize, usize)) {
-        for at in (range.0..range.1).step_by(LANES) {
-            let (h, z) = (block(&state.depth, at), block(bed, at));
-            let (qx, qz) = (block(&state.discharge_x, at), block(&state.discharge_z, at));
-            let (depth, level) = (block_mut(&mut self.depth, at), block_mut(&mut self.level, at));
-            let (u, v) = (block_mut(&mut self.u, at), block_mut(&mut self.v, at));
+    pub fn load(&mut self, state: &State, bed: &[f32], index: usize, width: usize) {
+        let columns = [&state.depth, &state.discharge_x, &state.discharge_z, bed];
+        let [h, qx, qz, z] = columns.map(|values| blocks(&values[index..index + width]));
+        for n in 0..width / LANES {
+            self.load_block(FIRST + n * LANES, [&h.0[n], &qx.0[n], &qz.0[n], &z.0[n]]);
+        }
+        if !h.1.is_empty() {
+            let [h, qx, qz, z] = [h, qx, qz, z].map(|(_, rest)| padded(rest));
+            self.load_block(FIRST + width / LANES * LANES, [&h, &qx, &qz, &z]);
+        }
+    }
+
+    #[inline(always)]
+    fn load_block(&mut self, at: usize, [h, qx, qz, z]: [&Block; 4]) {
+        let (bed, depth) = (block_mut(&mut self.bed, at), block_mut(&mut self.depth, at));
+        let (level, u, v) = (block_mut(&mut self.level, at), block_mut(&mut self.u, at), block_mut(&mut self.v, at));
+        for k in 0..LANES {
+            (bed[k], depth[k], level[k], u[k], v[k]) = primitive(h[k], (qx[k], qz[k]), z[k]);
+        }
+    }
+
+    /// Finds what friction leaves the cells `range` of their speed, if there is any. A loop of its own, for it is a long chain of
+    /// operations, and a processor looks ahead over so many only: the shorter they are the more blocks it works on at once.
+    #[inline(always)]
+    pub fn slow(&mut self, range: Range<usize>, numbers: Numbers) {
+        if numbers.drag <= 0.0 {
+            return;
+        }
+        for at in range.step_by(LANES) {
+            let (depth, u, v) = (block(&self.depth, at), block(&self.u, at), block(&self.v, at));
+            let slowed = block_mut(&mut self.slowed, at);
             for k in 0..LANES {
-                let d = max(sane(h[k], DEEPEST), 0.0);
-                let factor = per_depth(d);
-                depth[k] = d;
-                level[k] = d + z[k];
-                u[k] = sane(qx[k] * factor, FASTEST);
-                v[k] = sane(qz[k] * factor, FASTEST);
+                let speed = (u[k] * u[k] + v[k] * v[k]).sqrt();
+                slowed[k] = slowed_by_friction(depth[k], speed, 0.5 * numbers.dt, numbers.drag);
             }
         }
+    }
+
+    /// Cell `index` of a state over its `bed` at place `k`.
+    #[inline(always)]
+    pub fn load_one(&mut self, state: &State, bed: &[f32], index: usize, k: usize) {
+        let discharge = (state.discharge_x[index], state.discharge_z[index]);
+        let cell = primitive(state.depth[index], discharge, bed[index]);
+        (self.bed[k], self.depth[k], self.level[k], self.u[k], self.v[k]) = cell;
+    }
+
+    /// The water of place `from` at place `to`, over this `bed` (m).
+    #[inline(always)]
+    pub fn repeat(&mut self, from: usize, to: usize, bed: f32) {
+        (self.depth[to], self.u[to], self.v[to]) = (self.depth[from], self.u[from], self.v[from]);
+        self.level[to] = self.depth[to] + bed;
+        self.bed[to] = self.level[to] - self.depth[to];
     }
 }
 
@@ -192,14 +96,26 @@ impl Faces {
     /// Limited slopes, carried half a step ahead by the equations in primitive form (Hancock), in the cells `range` of the
     /// row `here` between its neighbours.
     #[inline(always)]
-    pub fn reconstruct(&mut self, north: &Cells, here: &Cells, south: &Cells, range: (usize, usize), numbers: Numbers) {
-        for at in (range.0..range.1).step_by(LANES) {
-            self.reconstruct_block(north, here, south, at, numbers);
+    pub fn reconstruct(
+        &mut self,
+        kept: &mut Kept,
+        (north, here, south): (&Cells, &Cells, &Cells),
+        range: Range<usize>,
+        numbers: Numbers,
+    ) {
+        for at in range.step_by(LANES) {
+            self.reconstruct_block(kept, (north, here, south), at, numbers);
         }
     }
 
     #[inline(always)]
-    fn reconstruct_block(&mut self, north: &Cells, here: &Cells, south: &Cells, at: usize, numbers: Numbers) {
+    fn reconstruct_block(
+        &mut self,
+        kept: &mut Kept,
+        (north, here, south): (&Cells, &Cells, &Cells),
+        at: usize,
+        numbers: Numbers,
+    ) {
         // Several short loops: of one long one the compiler makes no vector instructions.
         macro_rules! slopes {
             ($field:ident) => {{
@@ -233,55 +149,35 @@ impl Faces {
             v_then[k] = v[k] - step * (u[k] * vx[k] + v[k] * vz[k] + GRAVITY * lz[k]);
         }
         if numbers.drag > 0.0 {
+            let slowed = block(&here.slowed, at);
             for k in 0..LANES {
-                let speed = (u_then[k] * u_then[k] + v_then[k] * v_then[k]).sqrt();
-                let kept = kept_by_friction(h[k], h[k] * speed, 0.5 * numbers.dt, numbers.drag);
-                u_then[k] *= kept;
-                v_then[k] *= kept;
+                u_then[k] *= slowed[k];
+                v_then[k] *= slowed[k];
             }
         }
         let (u_w, u_e) = (block(&here.u, at - 1), block(&here.u, at + 1));
         let (v_n, v_s) = (block(&north.v, at), block(&south.v, at));
-        let broken = block_mut(&mut self.broken, at);
+        let broken = block_mut(&mut kept.broken, at);
         for k in 0..LANES {
             broken[k] = brokenness(h[k], (u_w[k] - u_e[k]) + (v_n[k] - v_s[k]));
         }
-        let now = Now { depth: h, level: l, risen: &risen };
-        let bed = |cells: &Cells, at: usize| -> Block {
-            let (level, depth) = (block(&cells.level, at), block(&cells.depth, at));
-            core::array::from_fn(|k| level[k] - depth[k])
-        };
-        let (before, after) = (self.west.block_mut(at), self.east.block_mut(at));
-        let beds = (&bed(here, at - 1), &bed(here, at + 1));
-        show_sides(
-            before,
-            after,
-            block_mut(&mut self.push_x, at),
-            &now,
-            (&hx, &lx),
-            (&u_then, &ux),
-            (&v_then, &vx),
-            beds,
-        );
-        let (before, after) = (self.north.block_mut(at), self.south.block_mut(at));
-        let beds = (&bed(north, at), &bed(south, at));
-        show_sides(
-            before,
-            after,
-            block_mut(&mut self.push_z, at),
-            &now,
-            (&hz, &lz),
-            (&v_then, &vz),
-            (&u_then, &uz),
-            beds,
-        );
+        let now = Now { bed: block(&here.bed, at), depth: h, level: l, risen: &risen };
+        let beds = (block(&here.bed, at - 1), block(&here.bed, at + 1));
+        let sides = (self.west.block_mut(at), self.east.block_mut(at));
+        let push = block_mut(&mut kept.push_x, at);
+        show_sides(sides, push, &now, (&hx, &lx), (&u_then, &ux), (&v_then, &vx), beds);
+        let beds = (block(&north.bed, at), block(&south.bed, at));
+        let sides = (self.north.block_mut(at), kept.south.block_mut(at));
+        let push = block_mut(&mut kept.push_z, at);
+        show_sides(sides, push, &now, (&hz, &lz), (&v_then, &vz), (&u_then, &uz), beds);
     }
 }
 
 type SideBlocks<'a> = (&'a mut Block, &'a mut Block, &'a mut Block, &'a mut Block);
 
-/// Depth and level of a block of cells, and how far they rise in half a step.
+/// Bed, depth and level of a block of cells, and how far they rise in half a step.
 struct Now<'a> {
+    bed: &'a Block,
     depth: &'a Block,
     level: &'a Block,
     risen: &'a Block,
@@ -291,8 +187,7 @@ struct Now<'a> {
 /// normal with their slopes; `beds` are the elevations of the two neighbours.
 #[inline(always)]
 fn show_sides(
-    before: SideBlocks,
-    after: SideBlocks,
+    (before, after): (SideBlocks, SideBlocks),
     push: &mut Block,
     now: &Now,
     (hs, ls): (&Block, &Block),
@@ -301,15 +196,27 @@ fn show_sides(
     beds: (&Block, &Block),
 ) {
     let (h, l) = (now.depth, now.level);
+    let [mut shown_b, mut shown_a, mut lift_b, mut lift_a] = [[0.0; LANES]; 4];
+    let mut is_deep = true;
     for k in 0..LANES {
-        let bed = l[k] - h[k];
-        let rises = max((beds.0[k] - bed).abs(), (beds.1[k] - bed).abs());
-        let (shown_b, lift_b) = face_bed((l[k] - ls[k]) - (h[k] - hs[k]), bed, beds.0[k], h[k] < rises);
-        let (shown_a, lift_a) = face_bed((l[k] + ls[k]) - (h[k] + hs[k]), bed, beds.1[k], h[k] < rises);
+        let rises = max((beds.0[k] - now.bed[k]).abs(), (beds.1[k] - now.bed[k]).abs());
+        is_deep &= h[k] >= rises;
+        shown_b[k] = (l[k] - ls[k]) - (h[k] - hs[k]);
+        shown_a[k] = (l[k] + ls[k]) - (h[k] + hs[k]);
+    }
+    if !is_deep {
+        for k in 0..LANES {
+            let bed = now.bed[k];
+            let rises = max((beds.0[k] - bed).abs(), (beds.1[k] - bed).abs());
+            (shown_b[k], lift_b[k]) = face_bed(shown_b[k], bed, beds.0[k], h[k] < rises);
+            (shown_a[k], lift_a[k]) = face_bed(shown_a[k], bed, beds.1[k], h[k] < rises);
+        }
+    }
+    for k in 0..LANES {
         let (h1, l1) = (h[k] + now.risen[k], l[k] + now.risen[k]);
         // The bed of a face stays where it is, also where the water would fall below it.
-        let (depth_b, level_b) = (max(h1 - hs[k], 0.0), max((l1 - ls[k]) + lift_b, shown_b));
-        let (depth_a, level_a) = (max(h1 + hs[k], 0.0), max((l1 + ls[k]) + lift_a, shown_a));
+        let (depth_b, level_b) = (max(h1 - hs[k], 0.0), max((l1 - ls[k]) + lift_b[k], shown_b[k]));
+        let (depth_a, level_a) = (max(h1 + hs[k], 0.0), max((l1 + ls[k]) + lift_a[k], shown_a[k]));
         before.0[k] = depth_b;
         before.1[k] = level_b;
         after.0[k] = depth_a;
@@ -332,25 +239,18 @@ pub(super) struct Beside<'a> {
 }
 
 impl Fluxes {
-    /// Fluxes through the faces `k` of `range` between the cells `k` before and `k + shift` after them, over `crests` if there are
-    /// any.
+    /// Fluxes through the faces `k` of `range` between the cells `k - shift` before and `k` after them, over `crests` if there
+    /// are any.
     #[inline(always)]
-    pub fn solve(
-        &mut self,
-        before: Beside,
-        after: Beside,
-        shift: usize,
-        range: (usize, usize),
-        crests: Option<&Values>,
-    ) {
+    pub fn solve(&mut self, before: Beside, after: Beside, shift: usize, range: Range<usize>, crests: Option<&Values>) {
         match crests {
             None => self.solve_over(before, after, shift, range, |_| f32::NEG_INFINITY),
             Some(crests) => {
-                self.solve_over(before, after, shift, range, |k| crests[k]);
+                self.solve_over(before, after, shift, range.clone(), |k| crests[k]);
                 let (before, after) = (before.sides, after.sides);
-                for k in (range.0..range.1).filter(|&k| crests[k] == f32::INFINITY) {
-                    self.before[k] += wall(before.depth[k], before.normal[k]);
-                    self.after[k] += wall(after.depth[k + shift], -after.normal[k + shift]);
+                for k in range.filter(|&k| crests[k] == f32::INFINITY) {
+                    self.before[k] += wall(before.depth[k - shift], before.normal[k - shift]);
+                    self.after[k] += wall(after.depth[k], -after.normal[k]);
                 }
             }
         }
@@ -362,110 +262,146 @@ impl Fluxes {
         before: Beside,
         after: Beside,
         shift: usize,
-        range: (usize, usize),
+        range: Range<usize>,
         crest: impl Fn(usize) -> f32,
     ) {
-        for at in (range.0..range.1).step_by(LANES) {
-            let (l, r) = (before.sides.block(at), after.sides.block(at + shift));
-            let broken = (block(before.broken, at), block(after.broken, at + shift));
+        for at in range.step_by(LANES) {
+            let (l, r) = (before.sides.block(at - shift), after.sides.block(at));
+            let broken = (block(before.broken, at - shift), block(after.broken, at));
             let (mass, first) = (block_mut(&mut self.mass, at), block_mut(&mut self.before, at));
             let (second, along) = (block_mut(&mut self.after, at), block_mut(&mut self.tangential, at));
+            let mut is_plain = true;
             for k in 0..LANES {
-                let left = Side { depth: l.0[k], level: l.1[k], normal: l.2[k], tangential: l.3[k] };
-                let right = Side { depth: r.0[k], level: r.1[k], normal: r.2[k], tangential: r.3[k] };
-                let flux = riemann(left, right, crest(at + k), max(broken.0[k], broken.1[k]));
-                mass[k] = flux.mass;
-                first[k] = flux.before;
-                second[k] = flux.after;
-                along[k] = flux.tangential;
+                let (left, right) = (side(l, k), side(r, k));
+                let meeting = Meeting::new(left, right, crest(at + k));
+                let (flux, _, is_fan) = meeting.hllc(left.tangential, right.tangential);
+                (mass[k], first[k], second[k], along[k]) = (flux.mass, flux.before, flux.after, flux.tangential);
+                is_plain &= !is_fan & (max(broken.0[k], broken.1[k]) <= 0.0);
+            }
+            if is_plain {
+                continue;
+            }
+            for k in 0..LANES {
+                let flux = riemann(side(l, k), side(r, k), crest(at + k), max(broken.0[k], broken.1[k]));
+                (mass[k], first[k], second[k], along[k]) = (flux.mass, flux.before, flux.after, flux.tangential);
             }
         }
     }
 }
 
+#[inline(always)]
+fn side((depth, level, normal, tangential): (&Block, &Block, &Block, &Block), k: usize) -> Side {
+    Side { depth: depth[k], level: level[k], normal: normal[k], tangential: tangential[k] }
+}
+
 /// What surrounds a row of cells, and what enters it from above.
 pub(super) struct Surroundings<'a> {
-    /// Fluxes along x through the eastern faces.
+    /// Fluxes along x through the western faces of the cells and of the one after them.
     pub x: &'a Fluxes,
     /// Fluxes along z through the northern faces.
     pub north: &'a Fluxes,
     /// Fluxes along z through the southern faces.
     pub south: &'a Fluxes,
-    /// The row's own faces.
-    pub faces: &'a Faces,
-    /// What point sources add, m/s, for each cell; `None` if there are none.
+    /// What is kept of the row.
+    pub kept: &'a Kept,
+    /// What point sources add, m/s, if there are any.
     pub sources: Option<&'a Values>,
 }
 
-/// What a step makes of a row.
+/// What a strip of columns has met on its way down.
 #[derive(Clone)]
-pub(super) struct Updated {
-    pub state: StateRows,
-    /// What fell and sprang, m.
-    pub given: Values,
-    /// |u| + c, m/s.
-    pub signal: Values,
+pub(super) struct Met {
+    /// Greatest |u| + c of every lane, m/s.
+    fastest: Block,
+    /// What fell and sprang in each cell of the row, m, if there are point sources.
+    added: Values,
+    /// What fell and sprang, as a sum of depths, m. Counted only if there are point sources.
+    pub given: f64,
 }
 
-impl Default for Updated {
+impl Default for Met {
     fn default() -> Self {
-        Self { state: StateRows::default(), given: [0.0; SPAN], signal: [0.0; SPAN] }
+        Self { fastest: [0.0; LANES], added: [0.0; SPAN], given: 0.0 }
     }
 }
 
-impl Updated {
-    /// The state of the first `width` cells of a strip after a step.
+impl Met {
+    /// Greatest |u| + c, m/s.
+    pub fn fastest(&self) -> f32 {
+        self.fastest.into_iter().fold(0.0, f32::max)
+    }
+
+    /// Takes the step of `count` cells: those of the domain from `index` on, at place `FIRST` of a strip, and at `to` of `new`.
     #[inline(always)]
-    pub fn update(&mut self, old: &StateRows, around: &Surroundings, numbers: Numbers, width: usize) {
-        for at in (HALO..HALO + width).step_by(LANES) {
-            match around.sources {
-                None => self.update_block(old, around, numbers, at, |_| 0.0),
-                Some(sources) => self.update_block(old, around, numbers, at, |k| sources[at + k]),
+    pub fn update(
+        &mut self,
+        (new, to): (&mut StateMut, usize),
+        (old, index): (&State, usize),
+        around: &Surroundings,
+        numbers: Numbers,
+        count: usize,
+    ) {
+        let olds = [&old.depth, &old.carry, &old.discharge_x, &old.discharge_z];
+        let [h, carry, qx, qz] = olds.map(|values| blocks(&values[index..index + count]));
+        let news = [&mut *new.depth, &mut *new.carry, &mut *new.discharge_x, &mut *new.discharge_z];
+        let [h_new, carry_new, qx_new, qz_new] = news.map(|values| values[to..to + count].as_chunks_mut::<LANES>());
+        for n in 0..count / LANES {
+            let at = FIRST + n * LANES;
+            let new = [&mut h_new.0[n], &mut carry_new.0[n], &mut qx_new.0[n], &mut qz_new.0[n]];
+            self.update_block(new, [&h.0[n], &carry.0[n], &qx.0[n], &qz.0[n]], around, numbers, at);
+        }
+        let rest = h.1.len();
+        if rest > 0 {
+            let [h, carry, qx, qz] = [h, carry, qx, qz].map(|(_, rest)| padded(rest));
+            let mut new = [[0.0; LANES]; 4];
+            let fastest = self.fastest;
+            self.update_block(new.each_mut(), [&h, &carry, &qx, &qz], around, numbers, FIRST + count - rest);
+            // What lies behind the last cell of a row is none of its own.
+            self.fastest[rest..].copy_from_slice(&fastest[rest..]);
+            for ((_, to), from) in [h_new, carry_new, qx_new, qz_new].into_iter().zip(&new) {
+                to.copy_from_slice(&from[..rest]);
             }
         }
-    }
-
-    /// The fastest signal of the cells of a strip, m/s.
-    #[inline(always)]
-    pub fn fastest(&self, width: usize) -> f32 {
-        // Floats that are not negative are ordered like their bits, and integers have a vector maximum.
-        let signals = &self.signal[HALO..HALO + width];
-        f32::from_bits(signals.iter().fold(0, |fastest, signal| fastest.max(signal.to_bits())))
+        if around.sources.is_some() {
+            self.given += self.added[FIRST..FIRST + count].iter().map(|&given| f64::from(given)).sum::<f64>();
+        }
     }
 
     #[inline(always)]
     fn update_block(
         &mut self,
-        old: &StateRows,
+        [h_new, carry_new, qx_new, qz_new]: [&mut Block; 4],
+        [h, carry, qx, qz]: [&Block; 4],
         around: &Surroundings,
         numbers: Numbers,
         at: usize,
-        source: impl Fn(usize) -> f32,
     ) {
-        let (h, carry) = (block(&old.depth, at), block(&old.carry, at));
-        let (qx, qz) = (block(&old.discharge_x, at), block(&old.discharge_z, at));
-        let (h_new, carry_new) = (block_mut(&mut self.state.depth, at), block_mut(&mut self.state.carry, at));
-        let (qx_new, qz_new) = (block_mut(&mut self.state.discharge_x, at), block_mut(&mut self.state.discharge_z, at));
-        let (given, signal) = (block_mut(&mut self.given, at), block_mut(&mut self.signal, at));
         let (x, north, south) = (around.x, around.north, around.south);
-        let (mass_e, before_e, along_e) = (block(&x.mass, at), block(&x.before, at), block(&x.tangential, at));
-        let (mass_w, after_w, along_w) =
-            (block(&x.mass, at - 1), block(&x.after, at - 1), block(&x.tangential, at - 1));
+        let (mass_w, after_w, along_w) = (block(&x.mass, at), block(&x.after, at), block(&x.tangential, at));
+        let (mass_e, before_e, along_e) =
+            (block(&x.mass, at + 1), block(&x.before, at + 1), block(&x.tangential, at + 1));
         let (mass_n, after_n, along_n) =
             (block(&north.mass, at), block(&north.after, at), block(&north.tangential, at));
         let (mass_s, before_s, along_s) =
             (block(&south.mass, at), block(&south.before, at), block(&south.tangential, at));
-        let (push_x, push_z) = (block(&around.faces.push_x, at), block(&around.faces.push_z, at));
+        let (push_x, push_z) = (block(&around.kept.push_x, at), block(&around.kept.push_z, at));
         let Numbers { dt, ratio, drag, rain } = numbers;
+        let mut rate = [rain; LANES];
+        if let Some(sources) = around.sources {
+            let sources = block(sources, at);
+            for k in 0..LANES {
+                rate[k] += sources[k];
+            }
+        }
         for k in 0..LANES {
             let depth = max(sane(h[k], DEEPEST), 0.0);
             let flowed = -ratio * ((mass_e[k] - mass_w[k]) + (mass_s[k] - mass_n[k]));
             // A sink takes no more than there is.
-            let added = max(dt * (rain + source(k)), -max(depth + flowed, 0.0));
+            let added = max(dt * rate[k], -max(depth + flowed, 0.0));
+            rate[k] = added;
             // Kahan: what the sum cannot hold is carried to the next step, and so is water that left twice.
             let change = flowed + added + sane(carry[k], DEEPEST);
             let sum = max(depth + change, 0.0);
-            given[k] = added;
             h_new[k] = sum;
             carry_new[k] = change - (sum - depth);
 
@@ -479,7 +415,11 @@ impl Updated {
             let kept = film * kept_by_friction(sum, (px * px + pz * pz).sqrt(), dt, drag);
             qx_new[k] = px * kept;
             qz_new[k] = pz * kept;
-            signal[k] = max(px.abs(), pz.abs()) * kept * factor + (GRAVITY * sum).sqrt();
+            let signal = max(px.abs(), pz.abs()) * kept * factor + (GRAVITY * sum).sqrt();
+            self.fastest[k] = max(signal, self.fastest[k]);
+        }
+        if around.sources.is_some() {
+            *block_mut(&mut self.added, at) = rate;
         }
     }
 }

@@ -69,18 +69,35 @@ fn strips_and_bands_leave_no_seams() {
         let middle = Vec2::new(columns as f32, rows as f32) / 2.0;
         // Counted from the north-west, where both domains are the same.
         let hump = |at: Vec2, _| {
-            let from_hump = at + middle - Vec2::new(500.0, 60.0);
+            let from_hump = at + middle - Vec2::new(1000.0, 60.0);
             still(1.0 + 0.5 * f64::from((-0.01 * from_hump.length_squared()).exp()))
         };
         water.set_water(hump).expect("a sane wave");
         water.advance(1e6, 60);
         water
     };
-    let (narrow, wide) = (pond(600, 130), pond(1200, 260));
+    let (narrow, wide) = (pond(1100, 130), pond(2200, 260));
     // One step carries news by two cells at most, and 60 steps by 120.
     for row in 0..10 {
         let part =
-            |water: &ShallowWater, columns: usize| water.depths()[row * columns + 400..row * columns + 480].to_vec();
-        assert_eq!(part(&narrow, 600), part(&wide, 1200), "row {row}");
+            |water: &ShallowWater, columns: usize| water.depths()[row * columns + 900..row * columns + 980].to_vec();
+        assert_eq!(part(&narrow, 1100), part(&wide, 2200), "row {row}");
     }
+}
+
+/// A wave is the same over a seam of strips, which are 1024 columns wide, as in the middle of one.
+#[test]
+fn a_wave_over_a_seam_is_one_elsewhere() {
+    let around = |column: usize| {
+        let mut water = land(1400, 70, 1.0, |_, _| 0.0);
+        water.set_manning(0.03).expect("a sane roughness");
+        let hump = |at: Vec2, _| {
+            let from_hump = at + Vec2::new(700.0, 35.0) - Vec2::new(column as f32, 20.0);
+            still(1.0 + 0.5 * f64::from((-0.01 * from_hump.length_squared()).exp()))
+        };
+        water.set_water(hump).expect("a sane wave");
+        water.advance(1e6, 60);
+        (0..70).map(|row| water.depths()[row * 1400 + column - 60..][..120].to_vec()).collect::<Vec<_>>()
+    };
+    assert_eq!(around(512), around(1024));
 }

@@ -59,9 +59,15 @@ fn a_domain_has_cells() {
 fn thin_domains_work() {
     for (columns, rows) in [(1, 1), (1, 7), (7, 1), (2, 2), (1, 600), (600, 1)] {
         for periodic in [false, true] {
-            for edge in
-                [Edge::Wall, Edge::Open, Edge::Still(1.5.into()), Edge::Level(0.5.into()), Edge::Discharge(1.0.into())]
-            {
+            let stream = Edge::Stream { level: 1.2.into(), entering: 0.7.into() };
+            for edge in [
+                Edge::Wall,
+                Edge::Open,
+                Edge::Still(1.5.into()),
+                stream,
+                Edge::Level(0.5.into()),
+                Edge::Discharge(1.0.into()),
+            ] {
                 let mut water = flat(columns, rows);
                 water.set_periodic(periodic, periodic);
                 water.set_water(|at, _| still(1.0 + 0.3 * f64::from(at.x.sin() + at.y.cos()))).expect("sane");
@@ -187,7 +193,8 @@ fn numbers_out_of_range_are_refused() {
         assert!(water.set_sources(source(Vec2::new(number, 0.0), 1.0, 1.0)).is_err());
         assert!(water.set_sources(source(Vec2::ZERO, number, 1.0)).is_err());
         assert!(water.set_sources(source(Vec2::ZERO, 1.0, number)).is_err());
-        for edge in [Edge::Still(number.into()), Edge::Level(number.into()), Edge::Discharge(number.into())] {
+        let stream = Edge::Stream { level: 1.0.into(), entering: number.into() };
+        for edge in [Edge::Still(number.into()), stream, Edge::Level(number.into()), Edge::Discharge(number.into())] {
             assert!(water.set_edge(DomainSide::West, EdgePart::All, edge).is_err());
         }
     }

@@ -18,6 +18,7 @@ struct Numbers {
 struct Clock {
     fastest: array<atomic<u32>, 2>,     // |u| + c as bits, units: m/s
     owed: array<f32, 2>,                // time that no step has used yet, units: s
+    rests: array<u32, 2>,               // 1 after a step of no time: both states are the same
     dt: f32,                            // of the newest step, units: s
     steps: u32,
     time: vec2<f32>,                    // time that has been simulated, and what the first number cannot hold, units: s
@@ -28,6 +29,7 @@ struct Clock {
 struct Edge {
     kind: u32,
     value: f32,
+    entering: f32,      // speed inwards of the water outside, units: m/s
 }
 
 // What a body does to the water of a cell.
@@ -55,7 +57,7 @@ struct Leaving {
 
 const WALL: u32 = 0u;
 const OPEN: u32 = 1u;
-const STILL: u32 = 2u;
+const FAR: u32 = 2u;
 const LEVEL: u32 = 3u;
 const DISCHARGE: u32 = 4u;
 

@@ -1,6 +1,6 @@
 // Stage: cells at the edges of the domain take the step, with what flows out there. The twin is `edge.rs` in
 // `freshet_hydro::shallow_water`.
-#import freshet::simulation::shallow_water::bindings::{numbers, parity, clock, edges, leaving, Leaving, Edge, within, WALL, OPEN, STILL, LEVEL, DISCHARGE}
+#import freshet::simulation::shallow_water::bindings::{numbers, parity, clock, edges, leaving, Leaving, Edge, within, WALL, OPEN, FAR, LEVEL, DISCHARGE}
 #import freshet::simulation::shallow_water::cells::{Around, primitive, flux_x, flux_z, update}
 #import freshet::simulation::shallow_water::scheme::{GRAVITY, NO_CREST, Faces, Flux, Side, added_to, beyond, reconstruct, riemann, wall}
 
@@ -141,8 +141,8 @@ fn edge_flux(at: Side, edge: Edge) -> Flux {
         return through(at, at.depth, at.normal);
     } else if kind == WALL || kind == OPEN {
         return Flux(0.0, wall(at.depth, at.normal), 0.0, 0.0);
-    } else if kind == STILL {
-        return riemann(at, Side(max(value - ground, 0.0), max(value, ground), 0.0, 0.0), NO_CREST, 0.0);
+    } else if kind == FAR {
+        return riemann(at, Side(max(value - ground, 0.0), max(value, ground), -edge.entering, 0.0), NO_CREST, 0.0);
     } else if kind == LEVEL {
         if at.normal >= celerity && at.depth > 0.0 {
             // Faster than its waves: no news of the outside can enter.

@@ -13,8 +13,6 @@ use freshet_hydro::{
 const MOST_CELLS: f32 = 16_777_216.0;
 /// Higher than the highest ground by this, m, the land is where the bed has no data.
 const NO_DATA_RISE: f32 = 1.0;
-/// Less than this enters nowhere, m²/s.
-const SLOWEST: f32 = 1e-4;
 /// Most samples of the bed along a side of a cell.
 const MOST_SAMPLES: f32 = 8.0;
 
@@ -112,8 +110,7 @@ pub(super) fn cells_of_part(water: &ShallowWater, side: DomainSide, from: f32, t
     if from.is_nan() || to.is_nan() || first == last { None } else { Some(EdgePart::Cells(first..last)) }
 }
 
-/// Sets what is outside the sides where nothing else is said: walls, but towards the water around it what flows in there, and
-/// still water elsewhere.
+/// Sets what is outside the sides where nothing else is said: walls, but the water around it towards that.
 pub(super) fn set_rims(
     water: &mut ShallowWater,
     area: &SimulatedArea,
@@ -133,12 +130,8 @@ pub(super) fn set_rims(
         for cell in 0..count {
             let along = (cell as f32 + 0.5) * water.cell_size() - area.half_size.dot(inwards.yx().abs());
             let place = area.center - inwards * area.half_size + inwards.yx().abs() * along;
-            let entering = around.mapped_current(place).dot(inwards) * around.ground_depth(place).clamp(0.0, 1e5);
-            let edge = if entering > SLOWEST {
-                Edge::Discharge((entering * water.cell_size()).into())
-            } else {
-                Edge::Still(0.0.into())
-            };
+            let entering = around.mapped_current(place).dot(inwards);
+            let edge = Edge::Stream { level: 0.0.into(), entering: entering.into() };
             water.set_edge(side, EdgePart::Cells(cell..cell + 1), edge)?;
         }
     }

@@ -33,6 +33,7 @@ pub(crate) struct GpuShallow {
 pub(crate) struct GpuEdge {
     pub kind: u32,
     pub value: f32,
+    pub entering: f32,
 }
 
 /// What a body does to the water of a cell; see [`Push`](freshet_hydro::shallow_water::Push).
@@ -51,6 +52,7 @@ pub(crate) struct GpuPush {
 pub(super) struct GpuClock {
     pub fastest: UVec2,
     pub owed: Vec2,
+    pub rests: UVec2,
     pub dt: f32,
     pub steps: u32,
     pub time: Vec2,
@@ -74,6 +76,7 @@ mod tests {
         // Pairs of numbers in arrays have no padding in storage buffers: they lie as vectors do.
         let wgsl = include_str!("bindings.wgsl")
             .replace("array<atomic<u32>, 2>", "vec2<u32>")
+            .replace("array<u32, 2>", "vec2<u32>")
             .replace("array<f32, 2>", "vec2<f32>");
         assert_same_layout::<GpuShallow, _>(&wgsl, "Numbers");
         assert_same_layout::<GpuClock, _>(&wgsl, "Clock");

@@ -152,7 +152,7 @@ impl Simulation {
         GpuWork {
             numbers,
             asked,
-            edges: self.water.edge_cells().map(|(kind, value)| GpuEdge { kind, value }).collect(),
+            edges: self.water.edge_cells().map(|(kind, [value, entering])| GpuEdge { kind, value, entering }).collect(),
             pushes: pushes(&self.water),
             start,
             ground,

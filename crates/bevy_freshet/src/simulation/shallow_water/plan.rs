@@ -153,7 +153,7 @@ impl Surroundings<'_> {
             variant: [work.has_sources, work.has_walls],
             steps: work.steps.next_multiple_of(2),
             edges: 2 * (size.x + size.y),
-            cells: uvec2(size.x.div_ceil(GROUP * COLUMNS), size.y.div_ceil(ROWS)),
+            cells: uvec2(size.x.div_ceil(GROUP.x * COLUMNS), size.y.div_ceil(GROUP.y * ROWS)),
             texels: uvec2(size.x.div_ceil(8), size.y.div_ceil(8)),
         })
     }

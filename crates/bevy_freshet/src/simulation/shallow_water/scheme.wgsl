@@ -30,12 +30,10 @@ fn per_depth(depth: f32) -> f32 {
 fn half_slope(before: vec4<f32>, here: vec4<f32>, after: vec4<f32>) -> vec4<f32> {
     let to_here = here - before;
     let from_here = after - here;
-    let central = 0.25 * (to_here + from_here);
-    let a = 0.75 * to_here;
-    let b = 0.75 * from_here;
-    let rising = max(min(min(a, b), central), vec4(0.0));
-    let falling = min(max(max(a, b), central), vec4(0.0));
-    return rising + falling;
+    let central = (1.0 / 3.0) * (to_here + from_here);
+    let most = max(min(to_here, from_here), vec4(0.0));
+    let least = min(max(to_here, from_here), vec4(0.0));
+    return 0.75 * max(min(central, most), least);
 }
 
 // The cell behind an edge as it stands for what is there: that at the edge, on a bed that goes on with its slope; but not from a
@@ -63,7 +61,7 @@ fn reconstruct(c: vec4<f32>, w: vec4<f32>, e: vec4<f32>, n: vec4<f32>, s: vec4<f
     let risen = -ratio * (c.z * x.x + c.w * z.x + c.x * (x.z + z.w));
     let u = c.z - ratio * (c.z * x.z + c.w * z.z + GRAVITY * x.y);
     let v = c.w - ratio * (c.z * x.w + c.w * z.w + GRAVITY * z.y);
-    let kept = kept_by_friction(c.x, c.x * sqrt(u * u + v * v), 0.5 * friction.x, friction.y);
+    let kept = slowed_by_friction(c.x, sqrt(c.z * c.z + c.w * c.w), 0.5 * friction.x, friction.y);
     let later = vec4(c.x + risen, c.y + risen, u * kept, v * kept);
     let bed = c.y - c.x;
     let beds = vec4(w.y - w.x, e.y - e.x, n.y - n.x, s.y - s.x);
@@ -162,10 +160,9 @@ fn riemann(l: Side, r: Side, crest: f32, broken: f32) -> Flux {
     let passed = select(mass, fan_mass, is_fan);
     let given = select(before, fan_before, is_fan);
 
-    let carried = select(r.tangential, l.tangential, passed > 0.0);
-    let mean_depth = hl * hr * 2.0 / max(hl + hr, 1e-20);
-    let smoothed = broken * (both * per_width) * mean_depth * (r.tangential - l.tangential);
-    return Flux(passed, given, given - pressure, passed * carried + smoothed);
+    let carried = max(passed, 0.0) * l.tangential + min(passed, 0.0) * r.tangential;
+    let smoothed = broken * (both * per_width * min(hl, hr)) * (r.tangential - l.tangential);
+    return Flux(passed, given, given - pressure, carried + smoothed);
 }
 
 // Momentum that a wall takes from water that comes at it with speed `towards`, beyond the pressure of its depth.
@@ -177,17 +174,24 @@ fn wall(depth: f32, towards: f32) -> f32 {
 
 // h^(−1/3) for h > 0.
 fn inverse_cube_root(h: f32) -> f32 {
-    var y = bitcast<f32>(0x54a2fa8cu - bitcast<u32>(h) / 3u);
-    y *= 4.0 / 3.0 - (1.0 / 3.0) * h * (y * y * y);
-    y *= 4.0 / 3.0 - (1.0 / 3.0) * h * (y * y * y);
-    y *= 4.0 / 3.0 - (1.0 / 3.0) * h * (y * y * y);
-    return y;
+    let guess = bitcast<f32>(0x54a1aa00u - (bitcast<u32>(h) >> 16u) * 0x5555u);
+    let r = 1.0 - h * (guess * guess * guess);
+    let square = r * r;
+    let series = (1.0 / 3.0 + 2.0 / 9.0 * r) + square * ((14.0 / 81.0 + 35.0 / 243.0 * r) + square * (91.0 / 729.0));
+    return guess + guess * (r * series);
 }
 
 // Share of its discharge that water keeps after `dt` (s) of Manning friction, `drag` being g n².
 fn kept_by_friction(depth: f32, discharge: f32, dt: f32, drag: f32) -> f32 {
     let root = inverse_cube_root(max(depth, 1e-6));
     let square = root * root;
-    let rate = drag * (square * square * square * root) * discharge * dt;
+    let rate = (square * square) * (square * root) * ((drag * dt) * discharge);
     return 2.0 / (1.0 + sqrt(1.0 + 4.0 * rate));
+}
+
+// Share of its speed that water keeps in `dt` (s) of friction, linear in it with that of `speed`.
+fn slowed_by_friction(depth: f32, speed: f32, dt: f32, drag: f32) -> f32 {
+    let root = inverse_cube_root(max(depth, 1e-6));
+    let square = root * root;
+    return 1.0 / (1.0 + (square * square) * ((drag * dt) * speed));
 }

@@ -11,8 +11,9 @@ use bevy::{
     shader::{Shader, ShaderDefVal},
 };
 
-/// Invocations of a workgroup of the step, side by side in a row.
-pub(super) const GROUP: u32 = 32;
+/// Invocations of a workgroup of the step, side by side and one below the other: as many as a graphics card has lanes, and a
+/// domain of 64 columns leaves none of them idle.
+pub(super) const GROUP: UVec2 = UVec2::new(16, 2);
 /// Columns that an invocation goes down.
 pub(super) const COLUMNS: u32 = 4;
 /// Rows that an invocation goes down.
@@ -51,7 +52,8 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
     let layout = layout();
     let stage = |label: &'static str, shader: &Handle<Shader>, entry: &'static str, defines: &[&str]| {
         let defines = defines.iter().copied().map(ShaderDefVal::from);
-        let numbers = [ShaderDefVal::UInt("GROUP".into(), GROUP), ShaderDefVal::UInt("ROWS".into(), ROWS)];
+        let number = |name: &str, value| ShaderDefVal::UInt(name.into(), value);
+        let numbers = [number("GROUP_X", GROUP.x), number("GROUP_Z", GROUP.y), number("ROWS", ROWS)];
         cache.queue_compute_pipeline(ComputePipelineDescriptor {
             label: Some(label.into()),
             layout: vec![layout.clone()],

@@ -20,6 +20,7 @@ fn begin() {
 fn tick(dt: f32) {
     let owed = clock.owed[parity.x];
     clock.dt = dt;
+    clock.rests[1u - parity.x] = select(0u, 1u, dt <= 0.0);
     clock.owed[1u - parity.x] = select(owed - dt, 0.0, dt >= owed);
     clock.steps += select(0u, 1u, dt > 0.0);
     clock.time = added_to(clock.time, dt);
@@ -78,7 +79,7 @@ fn row_beyond(here: Row, next: Row) -> Row {
     );
 }
 
-@compute @workgroup_size(#{GROUP}, 1)
+@compute @workgroup_size(#{GROUP_X}, #{GROUP_Z})
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = numbers.size;
     let dt = choose_dt();
@@ -93,11 +94,13 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let last = min(first + ROWS, size.y);
     if dt > 0.0 {
         go_down(column, first, last, dt);
-    } else {
+    } else if clock.rests[parity.x] == 0u {
         stay(column, first, last);
     }
 }
 
+// The time that was asked for has been simulated, and more steps than it took may follow: the first of them copies the state, so
+// that it is in whichever buffer comes next, and the others do nothing.
 fn stay(column: i32, first: i32, last: i32) {
     let size = numbers.size;
     for (var row = first; row < last; row++) {

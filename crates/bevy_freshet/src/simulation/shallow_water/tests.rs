@@ -56,7 +56,7 @@ impl Gpu {
     /// changes with time, else every few hundred.
     fn run(&mut self, water: &mut ShallowWater, duration: f64) -> u32 {
         let (mut asked, mut steps, mut at_once) = (0.0, 0, 4.0);
-        let mut edges: Vec<(u32, f32)> = Vec::new();
+        let mut edges: Vec<(u32, [f32; 2])> = Vec::new();
         let mut started = None;
         while duration - asked > 1e-7 * duration {
             let step = f64::from(water.courant() * water.cell_size() / water.fastest_signal().max(1e-3));
@@ -64,7 +64,7 @@ impl Gpu {
             asked += added;
             steps +=
                 self.advance(water, added, started.get_or_insert_with(|| (water.balance(), water.time(), default())));
-            let now: Vec<(u32, f32)> = water.edge_cells().collect();
+            let now: Vec<(u32, [f32; 2])> = water.edge_cells().collect();
             at_once = if now == edges { (2.0 * at_once).min(200.0) } else { 4.0 };
             edges = now;
         }
@@ -137,7 +137,7 @@ fn work(water: &mut ShallowWater, [start, ground]: [u64; 2], added: f64, steps: 
     GpuWork {
         numbers,
         asked: 0.0,
-        edges: water.edge_cells().map(|(kind, value)| GpuEdge { kind, value }).collect(),
+        edges: water.edge_cells().map(|(kind, [value, entering])| GpuEdge { kind, value, entering }).collect(),
         pushes: on_gpu::pushes(water),
         start: Some(Arc::new(StartState {
             version: start,
@@ -197,7 +197,7 @@ fn a_dam_break_is_that_of_the_twin() {
 #[ignore = "measures"]
 fn costs_of_steps() {
     let mut gpu = Gpu::new();
-    for size in [64, 128, 256, 512, 1024] {
+    for size in [64, 128, 256, 512, 1024, 2048] {
         let bed = Grid::from_fn(UVec2::splat(size), 1.0, |cell| -5.0 + 0.01 * cell.x as f32).expect("valid");
         let mut water = ShallowWater::new(&bed).expect("finite");
         water.set_manning(0.03).expect("sane");

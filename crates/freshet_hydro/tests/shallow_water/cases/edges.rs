@@ -61,6 +61,22 @@ fn farthest_from_rest(water: &ShallowWater) -> f64 {
     rises.max_by(|a, b| a.abs().total_cmp(&b.abs())).expect("at least one cell")
 }
 
+/// A stream goes on through its edges as if there were none, and a wave on it leaves downstream and upstream.
+pub fn a_stream_passes(run: Run) {
+    let mut water = land(200, 3, 1.0, |_, _| 0.0);
+    for (side, entering) in [(DomainSide::West, 0.8), (DomainSide::East, -0.8)] {
+        let stream = Edge::Stream { level: LEVEL.into(), entering: entering.into() };
+        water.set_edge(side, EdgePart::All, stream).expect("a sane edge");
+    }
+    let wave = |at: Vec2, _| (LEVEL + 0.1 * (-0.5 * (at.x / 10.0).powi(2)).exp(), Vec2::new(0.8, 0.0));
+    water.set_water(wave).expect("a sane wave");
+    run(&mut water, 200.0);
+    let speeds = (0..600).map(|index| f64::from((water.velocity(index).x - 0.8).abs())).fold(0.0, f64::max);
+    let rise = farthest_from_rest(&water);
+    println!("after the wave: {rise:.1e} m, {speeds:.1e} m/s");
+    assert!(rise < 5e-4 && speeds < 2e-3);
+}
+
 /// A ring that leaves a square at all angles through edges with still water behind them leaves less than 8 % of its
 /// height behind.
 pub fn a_ring_leaves(run: Run) {

@@ -24,6 +24,7 @@ macro_rules! every_case {
             edges {
                 reflect
                 a_ring_leaves
+                a_stream_passes
                 a_tide_is_followed
                 a_discharge_enters_dry_land
                 no_more_is_taken_than_there_is
