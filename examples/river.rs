@@ -1,10 +1,11 @@
 //! A real river: checkered balls, crates, logs and a boat float down a meandering channel.
 //!
-//! `--flow simulated` begins with a dry bed, which fills.
+//! `--flow simulated` begins with a dry bed, which fills; `--flow sluice` with a full valley behind a dike, whose sluice floods the
+//! plain below.
 //!
 //! With the feature `panel` every setting has a slider: F1 hides and shows them.
 //!
-//! `--camera` chooses from `bank`, `bend`, `drift`, `shallows`, `boat`, `above`, `bridge`, `noon`, `sunset`, `night`, `frost`
+//! `--camera` chooses from `bank`, `bend`, `drift`, `shallows`, `boat`, `above`, `sluice`, `bridge`, `noon`, `sunset`, `night`, `frost`
 //! and `ice`.
 mod common;
 #[path = "common/river.rs"]

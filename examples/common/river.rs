@@ -7,6 +7,8 @@ mod bodies;
 mod bridge;
 #[path = "lantern.rs"]
 mod lantern;
+#[path = "sluice.rs"]
+mod sluice;
 #[path = "views.rs"]
 mod views;
 
@@ -36,8 +38,9 @@ pub const LEVEL: f32 = 0.8;
 const START: Vec2 = Vec2::new(-98.0, 196.0);
 /// Where the river leaves the terrain, and a sensor returns bodies to the start.
 const END: Vec2 = Vec2::new(-2.0, 446.0);
-/// Time in which the simulated river fills, s.
+/// Time in which the simulated river fills, and in which the plain is flooded, s.
 const FILLING: f32 = 3600.0;
+const FLOODING: f32 = 900.0;
 /// The ends of the footbridge.
 const BRIDGE: [Vec2; 2] = [Vec2::new(-107.0, 228.5), Vec2::new(-75.0, 223.0)];
 /// Where the boat lies.
@@ -53,6 +56,8 @@ pub enum Flow {
     Map,
     /// The river is simulated: it begins dry, fills from its spring and from the sea, and finds its own current
     Simulated,
+    /// As simulated, but the valley is full behind a dike, whose sluice opens: the plain below is flooded
+    Sluice,
 }
 
 /// An app with the river, seen as the options say.
@@ -77,7 +82,7 @@ pub fn app(options: &Options, flow: Flow) -> Result<App, Box<dyn std::error::Err
     .insert_resource(TimestepMode::Fixed { dt: common::FRAME as f32, substeps: 1 })
     .insert_resource(Scene { bed, map, flow, view })
     .add_systems(Startup, (make_bodies, land, river, light, float).chain())
-    .add_systems(Update, slow_down);
+    .add_systems(Update, (slow_down, sluice::open));
     Ok(app)
 }
 
@@ -114,6 +119,9 @@ fn land(
     banks::spawn_banks(&mut commands, &assets, &mut meshes, &mut materials, &site);
     let footbridge = bridge::Site { ends: BRIDGE, water_level: LEVEL, height: &height };
     bridge::spawn_bridge(&mut commands, &mut meshes, &mut materials, &footbridge);
+    if scene.flow == Flow::Sluice {
+        sluice::spawn_dike(&mut commands, &mut meshes, &mut materials, LEVEL);
+    }
 }
 
 /// The bed as a height field: columns of a Rapier height field run along x, rows along z.
@@ -141,7 +149,8 @@ fn river(mut commands: Commands, scene: Res<Scene>, options: Res<Options>) {
     ));
     match scene.flow {
         Flow::Map => river.insert(scene.map.clone()),
-        Flow::Simulated => river.insert(simulated(&options)),
+        Flow::Simulated => river.insert(simulated(&options, SimulationStart::Dry, FILLING)),
+        Flow::Sluice => river.insert((simulated(&options, sluice::start(), FLOODING), sluice::walls())),
     };
     if scene.view.freezing > 0.0 {
         river.insert(WaterIce { freezing: scene.view.freezing, ..default() });
@@ -154,23 +163,18 @@ fn river(mut commands: Commands, scene: Res<Scene>, options: Res<Options>) {
     ));
 }
 
-/// The river as it fills: 25 m³/s come down from its upper arms, and at its mouth the sea stands at the still level.
-fn simulated(options: &Options) -> impl Bundle {
+/// The simulated river for so many seconds: 25 m³/s come down from its upper arms, and at its mouth the sea stands at the still level.
+fn simulated(options: &Options, start: SimulationStart, duration: f32) -> impl Bundle {
     let spring = WaterSource { at: vec2(-42.0, -88.0), radius: 10.0, rate: 25.0.into() };
     let mouth = WaterEdge { side: DomainSide::South, from: -24.0, to: 20.0, edge: Edge::Level(0.0.into()) };
-    // In a window it is watched; a picture is to show it full.
+    // In a window it is watched; a picture is to show what it comes to.
     let seconds = if options.out.is_some() { options.frames as f32 * common::FRAME as f32 } else { 60.0 };
-    let settings = WaterSimulation {
-        cell_size: 2.0,
-        start: SimulationStart::Dry,
-        speed: (FILLING / seconds).max(1.0),
-        max_steps: 1024,
-        ..default()
-    };
+    let settings =
+        WaterSimulation { cell_size: 2.0, start, speed: (duration / seconds).max(1.0), max_steps: 1024, ..default() };
     (settings, WaterSources { sources: vec![spring] }, WaterEdges { parts: vec![mouth], ..default() })
 }
 
-/// Once the simulated river is full its clock runs as all others do.
+/// Once the simulated river has come to rest its clock runs as all others do.
 fn slow_down(time: Res<Time>, options: Res<Options>, mut rivers: Query<&mut WaterSimulation>) {
     let filled = if options.out.is_some() { f32::INFINITY } else { 60.0 };
     for mut river in rivers.iter_mut().filter(|river| river.speed > 1.0 && time.elapsed_secs() > filled) {

@@ -30,13 +30,14 @@ const fn view(name: &'static str, eye: Vec3, target: Vec3, sun: (f32, f32)) -> V
 const BANK: View = view("bank", vec3(-62.0, 2.2, 262.0), vec3(-20.0, 0.3, 250.0), AFTERNOON);
 const BEND: View = view("bend", vec3(-75.0, 7.5, 232.0), vec3(-30.0, -1.0, 262.0), AFTERNOON);
 
-const VIEWS: [View; 12] = [
+const VIEWS: [View; 13] = [
     BANK,
     BEND,
     view("drift", vec3(-40.0, 0.9, 262.0), vec3(-18.0, 0.2, 252.0), AFTERNOON),
     view("shallows", vec3(-66.0, 2.6, 240.0), vec3(-72.0, -0.8, 246.0), AFTERNOON),
     view("boat", vec3(-32.0, 2.4, 254.0), vec3(-23.0, 0.2, 252.0), AFTERNOON),
     view("above", vec3(-30.0, 70.0, 320.0), vec3(-20.0, 0.0, 245.0), AFTERNOON),
+    view("sluice", vec3(-150.0, 14.0, 205.0), vec3(-105.0, 0.0, 150.0), AFTERNOON),
     view("bridge", vec3(-84.0, 1.5, 237.0), vec3(-92.5, 0.6, 224.0), AFTERNOON),
     View { sun: NOON, name: "noon", ..BEND },
     view("sunset", vec3(-8.0, 2.0, 244.0), vec3(-50.0, 1.5, 261.0), EVENING),

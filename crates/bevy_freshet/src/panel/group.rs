@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn every_setting_has_a_row_or_a_section_of_its_own() {
         // Drawn by `waves.rs`, `simulation.rs` and the choice of views; layers are the game's.
-        let elsewhere = ["trains", "start", "paused", "view", "layers"];
+        let elsewhere = ["trains", "start", "area", "paused", "view", "layers"];
         let registry = registry();
         let registry = registry.read();
         for group in groups() {

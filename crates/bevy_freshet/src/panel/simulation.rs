@@ -6,7 +6,7 @@ use super::{
     scale::shown,
 };
 use crate::body::{
-    ResetSimulation, SimulationBackend, SimulationStart, SimulationState, StepSimulation, WaterSimulation,
+    ResetSimulation, SimulationBackend, SimulationStart, SimulationState, StepSimulation, Water, WaterSimulation,
 };
 use bevy::prelude::*;
 use bevy_egui::egui::{self, Button, ComboBox, DragValue, Ui};
@@ -50,6 +50,7 @@ pub(super) fn draw(ui: &mut Ui, world: &mut World, panel: &mut WaterPanel, water
         ui.label(progress(&state));
         balance(ui, panel, &state);
         start(ui, world, water);
+        area(ui, world, water);
         group::draw_rows(ui, world, panel, water, &SETTINGS);
         around::draw(ui, world, panel, water);
     });
@@ -170,6 +171,31 @@ fn start(ui: &mut Ui, world: &mut World, water: Entity) {
         && let Some(mut simulation) = world.get_mut::<WaterSimulation>(water)
     {
         simulation.start = now;
+    }
+}
+
+fn area(ui: &mut Ui, world: &mut World, water: Entity) {
+    let Some(before) = world.get::<WaterSimulation>(water).map(|simulation| simulation.area) else { return };
+    let size = world.get::<Water>(water).map_or(Vec2::ONE, |water| water.size);
+    let mut now = before;
+    let mut is_part = before.is_some();
+    ui.checkbox(&mut is_part, "Only a part").on_hover_text("Simulates a part of the water. It begins anew.");
+    if is_part != before.is_some() {
+        now = is_part.then(|| Rect::from_center_size(Vec2::ZERO, 0.5 * size));
+    }
+    if let Some(area) = &mut now {
+        ui.horizontal(|ui| {
+            for (side, name) in
+                [(&mut area.min.x, "x "), (&mut area.max.x, "… "), (&mut area.min.y, "z "), (&mut area.max.y, "… ")]
+            {
+                ui.add(DragValue::new(side).prefix(name).speed(0.5)).on_hover_text("From the middle of the water, m.");
+            }
+        });
+    }
+    if now != before
+        && let Some(mut simulation) = world.get_mut::<WaterSimulation>(water)
+    {
+        simulation.area = now;
     }
 }
 

@@ -204,6 +204,7 @@ fn setting_fields(info: &'static StructInfo) -> impl Iterator<Item = &'static st
         ("WaterSurface", "view"),
         ("WaterSurface", "view_scale"),
         ("WaterReflection", "layers"),
+        ("WaterSimulation", "area"),
         ("WaterSimulation", "paused"),
     ];
     let component = info.type_path_table().short_path();

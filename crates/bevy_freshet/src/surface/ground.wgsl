@@ -34,6 +34,9 @@ const WET: f32 = 1e-3;
 // How far under the ground the surface of a simulated water is put where it is dry, units: m.
 const DRY: f32 = 0.5;
 
+// Distance between those places that are looked up, units: m. Where it is more than a cell, coarser levels count.
+var<private> spacing: f32 = 0.0;
+
 // Shares of the four cells around a place: bilinear.
 fn shares(t: vec2<f32>) -> vec4<f32> {
     return vec4((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
@@ -58,21 +61,55 @@ fn simulated_at(place: vec2<f32>) -> Simulated {
         return Simulated(0.0, outside, true);
     }
     let water = simulated_within(place);
-    let level = select(under_ground(place), water.level, water.is_wet);
+    let level = level_or_under_ground(water, place);
     return Simulated(share * level, mix(outside, water.velocity, share), true);
 }
 
-// Where the surface of simulated water is put at local `place` if it is dry, over the still level, units: m.
-fn under_ground(place: vec2<f32>) -> f32 {
+// Where the surface of simulated water is put at local `place`, over the still level, units: m.
+fn level_or_under_ground(water: Simulated, place: vec2<f32>) -> f32 {
+    if water.is_wet {
+        return water.level;
+    }
     return -clamp(ground_depth(place), -1e5, 1e5) - DRY;
 }
 
+// The simulated water at local `place`, as finely as `spacing` asks for.
 fn simulated_within(place: vec2<f32>) -> Simulated {
-    let c = cells_around(place - surface.simulated_center, surface.simulated_cell, surface.simulated_size);
-    let nw = textureLoad(simulated, c.low, 0);
-    let ne = textureLoad(simulated, vec2(c.high.x, c.low.y), 0);
-    let sw = textureLoad(simulated, vec2(c.low.x, c.high.y), 0);
-    let se = textureLoad(simulated, c.high, 0);
+    let wanted = level_of_detail(spacing);
+    let level = floor(wanted);
+    let fine = simulated_in(place, i32(level));
+    let share = wanted - level;
+    if share < 1e-3 {
+        return fine;
+    }
+    let coarse = simulated_in(place, i32(level) + 1);
+    let height = mix(level_or_under_ground(fine, place), level_or_under_ground(coarse, place), share);
+    let is_wet = select(fine.is_wet, coarse.is_wet, share > 0.5);
+    return Simulated(height, mix(fine.velocity, coarse.velocity, share), is_wet);
+}
+
+// The level of the pictures whose texels are as far apart as places that are looked up, no coarser than there is.
+fn level_of_detail(apart: f32) -> f32 {
+    let most = f32(textureNumLevels(simulated) - 1u);
+    return clamp(log2(max(apart, 1e-6) / surface.simulated_cell), 0.0, most);
+}
+
+// The cells around local `place` in a level of the pictures.
+fn simulated_cells(place: vec2<f32>, level: i32) -> Cells {
+    let texel = surface.simulated_cell * exp2(f32(level));
+    let corner = place - surface.simulated_center + 0.5 * surface.simulated_cell * surface.simulated_size;
+    let last = vec2<f32>(textureDimensions(simulated, level)) - 1.0;
+    let p = clamp(corner / texel - 0.5, vec2(0.0), last);
+    let low = floor(p);
+    return Cells(vec2<i32>(low), vec2<i32>(min(low + 1.0, last)), p - low);
+}
+
+fn simulated_in(place: vec2<f32>, level: i32) -> Simulated {
+    let c = simulated_cells(place, level);
+    let nw = textureLoad(simulated, c.low, level);
+    let ne = textureLoad(simulated, vec2(c.high.x, c.low.y), level);
+    let sw = textureLoad(simulated, vec2(c.low.x, c.high.y), level);
+    let se = textureLoad(simulated, c.high, level);
     let share = shares(c.t);
     let is_wet = vec4(nw.y, ne.y, sw.y, se.y) > vec4(WET);
     let wet = select(vec4(0.0), share, is_wet);
@@ -83,24 +120,25 @@ fn simulated_within(place: vec2<f32>) -> Simulated {
     let levels = vec4(nw.x, ne.x, sw.x, se.x);
     let mean = dot(wet, levels) / sum;
     // A dry cell above the water is a bank, up which it does not climb; one below is ground towards which a front falls.
-    let level = dot(share, select(min(levels, vec4(mean)), levels, is_wet));
+    let height = dot(share, select(min(levels, vec4(mean)), levels, is_wet));
     let velocity = (wet.x * nw.zw + wet.y * ne.zw + wet.z * sw.zw + wet.w * se.zw) / sum;
-    return Simulated(level, velocity, true);
+    return Simulated(height, velocity, true);
 }
 
-// Slope of the simulated level at local `place`, local xz.
-fn simulated_slope(place: vec2<f32>) -> vec2<f32> {
+// Slope of the simulated level at local `place`, local xz, as finely as places `apart` (m) see it.
+fn simulated_slope(place: vec2<f32>, apart: f32) -> vec2<f32> {
     if (surface.flags & types::FLAG_SIMULATED) == 0u {
         return vec2(0.0);
     }
-    let c = cells_around(place - surface.simulated_center, surface.simulated_cell, surface.simulated_size);
+    let level = i32(level_of_detail(apart) + 0.5);
+    let c = simulated_cells(place, level);
     var corners = array(c.low, vec2(c.high.x, c.low.y), vec2(c.low.x, c.high.y), c.high);
     var share = shares(c.t);
     var slope = vec2(0.0);
     var sum = 0.0;
     for (var k = 0; k < 4; k++) {
-        let wet = select(0.0, share[k], textureLoad(simulated, corners[k], 0).y > WET);
-        slope += wet * textureLoad(simulated_slopes, corners[k], 0).xy;
+        let wet = select(0.0, share[k], textureLoad(simulated, corners[k], level).y > WET);
+        slope += wet * textureLoad(simulated_slopes, corners[k], level).xy;
         sum += wet;
     }
     return slope / max(sum, 1e-4) * simulated_share(place);
@@ -116,8 +154,7 @@ fn risen(rest: vec2<f32>) -> f32 {
     if (surface.flags & types::FLAG_SIMULATED) == 0u {
         return 0.0;
     }
-    let water = simulated_at(rest);
-    return select(under_ground(rest), water.level, water.is_wet);
+    return level_or_under_ground(simulated_at(rest), rest);
 }
 
 // Whether there is water at local `place`, as far as it is simulated.

@@ -39,9 +39,11 @@ struct Fragment {
 @vertex
 fn vertex(in: Vertex) -> Fragment {
     let rest = clamp(surface.mesh_center + in.position.xz, -surface.half_size, surface.half_size);
+    let spacing = mesh::spacing_at(rest - surface.mesh_center);
+    ground::spacing = spacing;
     let felt = frozen::felt(rest);
     let fade = waves::shallow_fade(ground::still_depth(rest)) * felt.open;
-    let moved = waves::displacement(rest, fade, mesh::spacing_at(rest - surface.mesh_center));
+    let moved = waves::displacement(rest, fade, spacing);
     let xz = surface.world_from_local * (rest + moved.xz) + surface.world_origin;
     let world = vec3(xz.x, surface.level + ground::risen(rest) - ice::drop(felt.thickness) + moved.y, xz.y);
     return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest);
@@ -67,7 +69,7 @@ fn facet(
     let spacing = max(length(footprint.x), length(footprint.y));
     let swell = waves::slope(rest, waves::shallow_fade(depth) * open, spacing);
     let ripples = detail::slope(drift, footprint);
-    let flowing = ground::simulated_slope(rest);
+    let flowing = ground::simulated_slope(rest, spacing);
     let slope = surface.world_from_local * (swell.slope + flowing + (ripples.slope + rings) * open);
     return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance * open * open);
 }
@@ -79,6 +81,8 @@ fn normal_of(slope: vec2<f32>) -> vec3<f32> {
 @fragment
 fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(0) vec4<f32> {
     let pixel = in.position.xy;
+    // As the vertices have it.
+    ground::spacing = mesh::spacing_at(in.rest - surface.mesh_center);
     let still_depth = ground::still_depth(in.rest);
     let fields = field::at(in.rest);
     let footprint = flow::Footprint(dpdx(in.rest), dpdy(in.rest));

@@ -227,11 +227,12 @@ impl ShallowWater {
         Ok(())
     }
 
-    /// Fills every place below `level` (m) with still water, and takes all other water away.
+    /// Fills every place below `level` (m, rounded to 2⁻¹⁶ as beds are) with still water, and takes all other water away.
     ///
     /// # Errors
     /// [`ShallowWaterError::Number`] if a depth would not be finite.
     pub fn fill(&mut self, level: f32) -> Result<(), ShallowWaterError> {
+        let level = rounded(level);
         self.set_water(|_, bed| (if level < bed { 0.0 } else { level - bed }, Vec2::ZERO))
     }
 

@@ -90,12 +90,16 @@ impl ExtractComponent for ShallowFrame {
     }
 }
 
-/// The pictures of a simulation of so many cells.
+/// Most levels of a picture.
+const MOST_LEVELS: u32 = 6;
+
+/// The pictures of a simulation of so many cells, each with coarser levels.
 pub(super) fn pictures(size: UVec2) -> [Image; 2] {
     let picture = |label, format| {
         let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
         let mut image = Image::new_uninit(extent, TextureDimension::D2, format, RenderAssetUsages::all());
         image.texture_descriptor.label = Some(label);
+        image.texture_descriptor.mip_level_count = (size.min_element().max(1).ilog2() + 1).min(MOST_LEVELS);
         image.texture_descriptor.usage = TextureUsages::STORAGE_BINDING
             | TextureUsages::TEXTURE_BINDING
             | TextureUsages::COPY_DST

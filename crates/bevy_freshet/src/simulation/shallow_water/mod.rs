@@ -6,10 +6,12 @@
 //! border    cells at the edges take it with what is outside       │ frame may take
 //! push      bodies push the cells that they cover                 ┘
 //! show      pictures for the surface's shader                     once a frame
+//! coarsen   a coarser level of them, also of those from the CPU   for each level
 //! ```
 //!
 //! No number of them comes from the CPU during a frame: a step for which no time is left copies the state. What they come
 //! to returns some frames later ([`returned`]), and is all that the CPU knows of the water.
+mod coarsen;
 mod control;
 mod domain;
 mod driver;
@@ -67,6 +69,7 @@ impl Plugin for StagesPlugin {
         load_shader_library!(app, "scheme.wgsl");
         load_shader_library!(app, "cells.wgsl");
         embedded_asset!(app, "border.wgsl");
+        embedded_asset!(app, "coarsen.wgsl");
         embedded_asset!(app, "push.wgsl");
         embedded_asset!(app, "show.wgsl");
         embedded_asset!(app, "step.wgsl");
@@ -74,14 +77,18 @@ impl Plugin for StagesPlugin {
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         render_app
             .init_resource::<plan::Plans>()
+            .init_resource::<coarsen::Levels>()
             .add_systems(RenderStartup, (stages::create_stages, state::forget_states))
             .add_systems(
                 Render,
                 (
-                    plan::plan_steps.in_set(RenderSystems::PrepareBindGroups),
+                    (plan::plan_steps, coarsen::plan_levels).in_set(RenderSystems::PrepareBindGroups),
                     returned::map_copies.in_set(RenderSystems::Cleanup),
                 ),
             )
-            .add_systems(RenderGraph, plan::run_steps.in_set(RenderGraphSystems::Render).before(camera_driver));
+            .add_systems(
+                RenderGraph,
+                (plan::run_steps, coarsen::run_levels).chain().in_set(RenderGraphSystems::Render).before(camera_driver),
+            );
     }
 }

@@ -1,5 +1,6 @@
 //! Which stages run in a frame.
 use super::{
+    coarsen::level_of,
     frame::{GpuWork, ShallowFrame, ShallowWork},
     returned,
     stages::{COLUMNS, GROUP, ROWS, Stages},
@@ -137,11 +138,11 @@ impl Surroundings<'_> {
             ));
             Some(self.device.create_bind_group("water_shallow", &layout, &entries))
         };
-        let views = pictures.map(|picture| &picture.texture_view);
+        let views = pictures.map(|picture| level_of(picture, 0));
         let pictures = self.device.create_bind_group(
             "water_shallow_pictures",
             &self.cache.get_bind_group_layout(&self.stages.pictures),
-            &BindGroupEntries::sequential((views[0], views[1])),
+            &BindGroupEntries::sequential((&views[0], &views[1])),
         );
         let size = work.numbers.size.as_uvec2();
         Some(Plan {

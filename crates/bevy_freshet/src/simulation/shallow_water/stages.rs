@@ -5,8 +5,10 @@ use bevy::{
     prelude::*,
     render::render_resource::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedComputePipelineId, ComputePipelineDescriptor,
-        PipelineCache, ShaderStages, ShaderType, StorageTextureAccess, TextureFormat,
-        binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, texture_storage_2d, uniform_buffer},
+        PipelineCache, ShaderStages, ShaderType, StorageTextureAccess, TextureFormat, TextureSampleType,
+        binding_types::{
+            storage_buffer_read_only_sized, storage_buffer_sized, texture_2d, texture_storage_2d, uniform_buffer,
+        },
     },
     shader::{Shader, ShaderDefVal},
 };
@@ -31,6 +33,8 @@ pub(super) struct Stages {
     /// Binds the pictures as well.
     pub show: CachedComputePipelineId,
     pub pictures: BindGroupLayoutDescriptor,
+    pub coarsen: CachedComputePipelineId,
+    pub coarsen_layout: BindGroupLayoutDescriptor,
 }
 
 /// The two stages of a step.
@@ -43,7 +47,9 @@ impl Stages {
     /// Whether every pipeline has been made.
     pub fn are_ready(&self, cache: &PipelineCache) -> bool {
         let steps = self.steps.iter().flatten().flat_map(|step| [step.step, step.border]);
-        steps.chain([self.begin, self.push, self.show]).all(|stage| cache.get_compute_pipeline(stage).is_some())
+        steps
+            .chain([self.begin, self.push, self.show, self.coarsen])
+            .all(|stage| cache.get_compute_pipeline(stage).is_some())
     }
 }
 
@@ -77,14 +83,18 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
         entry_point: Some("main".into()),
         ..default()
     });
-    let push_layout = push_layout();
-    let push = cache.queue_compute_pipeline(ComputePipelineDescriptor {
-        label: Some("water_shallow_push".into()),
-        layout: vec![push_layout.clone()],
-        shader: load_embedded_asset!(&*assets, "push.wgsl"),
-        entry_point: Some("main".into()),
-        ..default()
-    });
+    let (push_layout, coarsen_layout) = (push_layout(), coarsen_layout());
+    let lone = |label: &'static str, layout: &BindGroupLayoutDescriptor, shader: Handle<Shader>| {
+        cache.queue_compute_pipeline(ComputePipelineDescriptor {
+            label: Some(label.into()),
+            layout: vec![layout.clone()],
+            shader,
+            entry_point: Some("main".into()),
+            ..default()
+        })
+    };
+    let push = lone("water_shallow_push", &push_layout, load_embedded_asset!(&*assets, "push.wgsl"));
+    let coarsen = lone("water_shallow_coarsen", &coarsen_layout, load_embedded_asset!(&*assets, "coarsen.wgsl"));
     commands.insert_resource(Stages {
         begin: stage("water_shallow_begin", &step, "begin", &[]),
         steps: [[pair(&[]), pair(&["WALLS"])], [pair(&["SOURCES"]), pair(&["SOURCES", "WALLS"])]],
@@ -92,6 +102,8 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
         push_layout,
         show,
         pictures,
+        coarsen,
+        coarsen_layout,
         layout,
     });
 }
@@ -103,6 +115,16 @@ fn pictures_layout() -> BindGroupLayoutDescriptor {
         (picture(TextureFormat::Rgba32Float), picture(TextureFormat::Rgba16Float)),
     );
     BindGroupLayoutDescriptor::new("water_shallow_pictures", &entries)
+}
+
+fn coarsen_layout() -> BindGroupLayoutDescriptor {
+    let texels = texture_2d(TextureSampleType::Float { filterable: false });
+    let picture = |format| texture_storage_2d(format, StorageTextureAccess::WriteOnly);
+    let entries = BindGroupLayoutEntries::sequential(
+        ShaderStages::COMPUTE,
+        (texels, texels, picture(TextureFormat::Rgba32Float), picture(TextureFormat::Rgba16Float)),
+    );
+    BindGroupLayoutDescriptor::new("water_shallow_coarsen", &entries)
 }
 
 fn push_layout() -> BindGroupLayoutDescriptor {
