@@ -200,7 +200,7 @@ fn settings_type(registration: &TypeRegistration, is_camera: bool) -> Option<&'s
 
 /// The fields of a component that are settings and do not belong to the scene.
 fn setting_fields(info: &'static StructInfo) -> impl Iterator<Item = &'static str> {
-    const OF_THE_SCENE: [(&str, &str); 4] = [
+    const OF_THE_SCENE: [(&str, &str); 5] = [
         ("WaterSurface", "view"),
         ("WaterSurface", "view_scale"),
         ("WaterReflection", "layers"),

@@ -75,7 +75,7 @@ fn level_or_under_ground(water: Simulated, place: vec2<f32>) -> f32 {
 
 // The simulated water at local `place`, as finely as `spacing` asks for.
 fn simulated_within(place: vec2<f32>) -> Simulated {
-    let wanted = level_of_detail(spacing);
+    let wanted = level_of_detail();
     let level = floor(wanted);
     let fine = simulated_in(place, i32(level));
     let share = wanted - level;
@@ -88,10 +88,10 @@ fn simulated_within(place: vec2<f32>) -> Simulated {
     return Simulated(height, mix(fine.velocity, coarse.velocity, share), is_wet);
 }
 
-// The level of the pictures whose texels are as far apart as places that are looked up, no coarser than there is.
-fn level_of_detail(apart: f32) -> f32 {
+// The level of the pictures whose texels are as far apart as the places that are looked up, no coarser than there is.
+fn level_of_detail() -> f32 {
     let most = f32(textureNumLevels(simulated) - 1u);
-    return clamp(log2(max(apart, 1e-6) / surface.simulated_cell), 0.0, most);
+    return clamp(log2(max(spacing, 1e-6) / surface.simulated_cell), 0.0, most);
 }
 
 // The cells around local `place` in a level of the pictures.
@@ -125,12 +125,12 @@ fn simulated_in(place: vec2<f32>, level: i32) -> Simulated {
     return Simulated(height, velocity, true);
 }
 
-// Slope of the simulated level at local `place`, local xz, as finely as places `apart` (m) see it.
-fn simulated_slope(place: vec2<f32>, apart: f32) -> vec2<f32> {
+// Slope of the simulated level at local `place`, local xz.
+fn simulated_slope(place: vec2<f32>) -> vec2<f32> {
     if (surface.flags & types::FLAG_SIMULATED) == 0u {
         return vec2(0.0);
     }
-    let level = i32(level_of_detail(apart) + 0.5);
+    let level = i32(level_of_detail() + 0.5);
     let c = simulated_cells(place, level);
     var corners = array(c.low, vec2(c.high.x, c.low.y), vec2(c.low.x, c.high.y), c.high);
     var share = shares(c.t);

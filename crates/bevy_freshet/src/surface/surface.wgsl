@@ -34,6 +34,8 @@ struct Fragment {
     @builtin(position) position: vec4<f32>,
     @location(0) world: vec3<f32>,
     @location(1) rest: vec2<f32>, // local xz of the particle at rest
+    // Of the mesh at one vertex of the triangle, units: m. Some renderers take one level of a picture for four pixels.
+    @location(2) @interpolate(flat) spacing: f32,
 }
 
 @vertex
@@ -46,7 +48,7 @@ fn vertex(in: Vertex) -> Fragment {
     let moved = waves::displacement(rest, fade, spacing);
     let xz = surface.world_from_local * (rest + moved.xz) + surface.world_origin;
     let world = vec3(xz.x, surface.level + ground::risen(rest) - ice::drop(felt.thickness) + moved.y, xz.y);
-    return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest);
+    return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest, spacing);
 }
 
 // The surface as far as a pixel resolves it.
@@ -69,7 +71,7 @@ fn facet(
     let spacing = max(length(footprint.x), length(footprint.y));
     let swell = waves::slope(rest, waves::shallow_fade(depth) * open, spacing);
     let ripples = detail::slope(drift, footprint);
-    let flowing = ground::simulated_slope(rest, spacing);
+    let flowing = ground::simulated_slope(rest);
     let slope = surface.world_from_local * (swell.slope + flowing + (ripples.slope + rings) * open);
     return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance * open * open);
 }
@@ -81,8 +83,7 @@ fn normal_of(slope: vec2<f32>) -> vec3<f32> {
 @fragment
 fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(0) vec4<f32> {
     let pixel = in.position.xy;
-    // As the vertices have it.
-    ground::spacing = mesh::spacing_at(in.rest - surface.mesh_center);
+    ground::spacing = in.spacing;
     let still_depth = ground::still_depth(in.rest);
     let fields = field::at(in.rest);
     let footprint = flow::Footprint(dpdx(in.rest), dpdy(in.rest));
