@@ -36,7 +36,7 @@ impl SimulatedArea {
     /// The part `wanted` of a water of `half_size`, blended over `blend` (m); nothing if they do not meet.
     pub fn part(wanted: Rect, half_size: Vec2, blend: f32) -> Option<Self> {
         let found = wanted.intersect(Rect::from_center_half_size(Vec2::ZERO, half_size));
-        if !(found.size().min_element() > 0.0) {
+        if found.is_empty() || !(found.min.is_finite() && found.max.is_finite()) {
             return None;
         }
         // Sides that come within a thousandth of the water's are its own.

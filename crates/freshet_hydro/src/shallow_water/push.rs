@@ -39,7 +39,7 @@ impl ShallowWater {
             if !(push.strength.is_finite() && push.strength >= 0.0) {
                 return Err(number("the strength of a push", "finite and not negative", push.strength));
             }
-            if !(push.velocity.abs().max_element() < FASTEST) {
+            if !(push.velocity.is_finite() && push.velocity.abs().max_element() < FASTEST) {
                 return Err(number("the speed of a push", "finite and below 10 km/s", push.velocity.length()));
             }
         }
