@@ -24,6 +24,7 @@ mod robustness;
 mod running;
 mod shore;
 mod simulated;
+mod simulated_gpu;
 mod star_filter;
 mod touch;
 mod views;

@@ -54,6 +54,10 @@ impl Picture {
 #[derive(Resource, Default)]
 struct Taken(Option<Image>);
 
+/// In the render app: no frame waits for what the GPU has been asked for.
+#[derive(Resource)]
+pub struct Hurried;
+
 fn wait_for_gpu(device: Res<RenderDevice>) {
     device.poll(PollType::wait_indefinitely()).unwrap();
 }
@@ -82,7 +86,8 @@ impl Stage {
         .init_resource::<Taken>();
         build(&mut app);
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            render_app.add_systems(Render, wait_for_gpu.in_set(RenderSystems::PostCleanup).ambiguous_with_all());
+            let wait = wait_for_gpu.run_if(not(resource_exists::<Hurried>)).in_set(RenderSystems::PostCleanup);
+            render_app.add_systems(Render, wait.ambiguous_with_all());
         }
         while app.plugins_state() == PluginsState::Adding {
             bevy::tasks::tick_global_task_pools_on_main_thread();

@@ -1,6 +1,7 @@
 //! Unusable settings are complained about: once, naming the entity and the field.
 use crate::{
     said::complaints,
+    simulated,
     stage::{SIZE, Stage},
 };
 use bevy::{
@@ -176,4 +177,33 @@ fn without_a_gpu_device_water_is_felt_and_one_warning_says_so() {
     assert!(ours.len() == 1 && ours[0].contains("no GPU device"), "{said:#?}");
     let sample = app.world_mut().run_system_once(|water: WaterQuery| water.sample(Vec3::ZERO)).unwrap().unwrap();
     assert_eq!((sample.height, sample.depth), (2.0, 3.0));
+}
+
+#[test]
+fn a_gpu_that_is_not_there_is_missed_once_and_the_cpu_simulates() {
+    for (backend, complaints_expected) in [(SimulationBackend::Gpu, 1), (SimulationBackend::Auto, 0)] {
+        let mut app = simulated::server();
+        let water = (Water::default(), WaterWaves::still(), WaterSimulation { backend, ..default() });
+        let water = app.world_mut().spawn(water).id();
+        let said = complaints(&mut app, |app| run(app, 10));
+        assert_eq!(said.len(), complaints_expected, "{said:#?}");
+        if backend == SimulationBackend::Gpu {
+            assert_said_once(&said, water, &["WaterSimulation::backend", "there is no GPU", "the CPU is used"]);
+        }
+        assert_eq!(app.world().get::<SimulationState>(water).unwrap().backend, SimulationBackend::Cpu);
+    }
+}
+
+#[test]
+fn a_renderer_in_software_is_no_gpu_unless_one_asks_for_it() {
+    let mut stage = Stage::new();
+    let adapter = stage.app.world().resource::<bevy::render::renderer::RenderAdapterInfo>();
+    let is_software = format!("{:?}", adapter.device_type) == "Cpu";
+    let automatic = if is_software { SimulationBackend::Cpu } else { SimulationBackend::Gpu };
+    use SimulationBackend::{Auto, Cpu, Gpu};
+    for (backend, used) in [(Auto, automatic), (Gpu, Gpu), (Cpu, Cpu)] {
+        let water = stage.spawn((Water::default(), WaterSimulation { backend, ..default() }));
+        stage.run(0.1);
+        assert_eq!(stage.app.world().get::<SimulationState>(water).unwrap().backend, used, "{backend:?}");
+    }
 }

@@ -45,7 +45,7 @@ pub enum WaterBedError {
 }
 
 impl WaterBed {
-    /// A bed from elevations (m, relative to the entity; NaN where there is no data).
+    /// A bed from elevations (m, relative to the entity; NaN or infinite where there is no data).
     ///
     /// # Errors
     /// [`WaterBedError::Empty`] if no cell has an elevation.
@@ -53,7 +53,8 @@ impl WaterBed {
         if elevations.values().iter().all(|z| !z.is_finite()) {
             return Err(WaterBedError::Empty);
         }
-        Ok(Self { elevations: Arc::new(elevations) })
+        let finite = elevations.map(|z| if z.is_finite() { *z } else { f32::NAN });
+        Ok(Self { elevations: Arc::new(finite) })
     }
 
     /// A bed from an ESRI ASCII grid; its centre comes to lie at the entity.
@@ -217,5 +218,11 @@ mod tests {
         assert_eq!(bed.mesh(0..4, 0..4).unwrap().triangles().unwrap().count(), 2 * 12 + 4);
         assert_eq!(bed.height(Vec2::ZERO), None);
         assert!(WaterBed::from_fn(uvec2(2, 2), 1.0, |_| f32::NAN).is_err());
+    }
+
+    #[test]
+    fn ground_at_infinity_is_no_data() {
+        let bed = WaterBed::from_fn(uvec2(5, 5), 1.0, |p| if p.x > 0.0 { f32::NEG_INFINITY } else { 1.0 }).unwrap();
+        assert_eq!([-1.0, 0.5, 1.0].map(|x| bed.height(vec2(x, 0.0))), [Some(1.0), None, None]);
     }
 }

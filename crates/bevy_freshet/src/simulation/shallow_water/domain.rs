@@ -11,6 +11,8 @@ use freshet_hydro::{
 
 /// Most cells of a simulation.
 const MOST_CELLS: f32 = 16_777_216.0;
+/// Most of them in a row: the largest picture that every device of WebGPU has.
+const MOST_IN_ROW: f32 = 8192.0;
 /// Higher than the highest ground by this, m, the land is where the bed has no data.
 const NO_DATA_RISE: f32 = 1.0;
 /// Most samples of the bed along a side of a cell.
@@ -60,7 +62,9 @@ pub(super) fn usable_area(
 /// more than can be simulated.
 pub(super) fn cells_of(half_size: Vec2, cell_size: f32) -> (UVec2, f32) {
     let extent = 2.0 * half_size;
-    let cell = cell_size.max((extent.x * extent.y / MOST_CELLS).sqrt()).min(extent.min_element());
+    let smallest = (extent.x * extent.y / MOST_CELLS).sqrt().max(extent.max_element() / MOST_IN_ROW);
+    // A water may be narrower than a cell.
+    let cell = cell_size.min(extent.min_element()).max(smallest);
     ((extent / cell).round().max(Vec2::ONE).as_uvec2(), cell)
 }
 
@@ -208,6 +212,9 @@ mod tests {
         assert_eq!(cells_of(vec2(0.2, 9.0), 1.0), (uvec2(1, 45), 0.4));
         let (size, cell) = cells_of(Vec2::splat(5e5), 0.01);
         assert!(size.x <= 4096 && cell > 200.0);
+        // A canal of 30 km: fewer cells than metres, wider than it is.
+        let (size, cell) = cells_of(vec2(15_000.0, 1.0), 1.0);
+        assert_eq!((size, cell), (uvec2(8192, 1), 30_000.0 / 8192.0));
     }
 
     #[test]

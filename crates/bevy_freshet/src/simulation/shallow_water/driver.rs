@@ -232,7 +232,7 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
         simulated.pushes.clear();
     }
     simulation.area = area;
-    simulation.follow_ground(resolved, settings);
+    simulation.follow_ground(entity, resolved, settings, reported);
     let around = resolved.flow.as_ref().filter(|_| area.is_part());
     let applied = Applied {
         around: around.map(|(map, scale)| (Arc::as_ptr(map) as usize, *scale)),
@@ -332,23 +332,30 @@ impl Simulation {
         advance
     }
 
-    fn follow_ground(&mut self, resolved: &ResolvedWater, settings: &WaterSimulation) {
+    fn follow_ground(
+        &mut self,
+        entity: Entity,
+        resolved: &ResolvedWater,
+        settings: &WaterSimulation,
+        reported: &mut Reported,
+    ) {
         let key = GroundKey::new(resolved, settings);
         self.flat = usable_ground(settings);
         if self.ground.as_ref() == Some(&key) {
             return;
         }
         let ground = ground_below(resolved, settings, &self.made_of.domain);
-        // A bed that the simulation refuses leaves the one that it has.
-        if self.water.set_bed(&ground).is_ok() {
-            self.new_ground();
-            self.see(0.0);
-            if self.area.is_part() {
-                // What flows in from around it depends on its depth.
-                self.applied = None;
-            }
-        }
         self.ground = Some(key);
+        if let Err(error) = self.water.set_bed(&ground) {
+            reported.warn(entity, "WaterBed", format_args!("is refused: {error}; the water keeps the one that it had"));
+            return;
+        }
+        self.new_ground();
+        self.see(0.0);
+        if self.area.is_part() {
+            // What flows in from around it depends on its depth.
+            self.applied = None;
+        }
     }
 
     fn new_ground(&mut self) {

@@ -35,6 +35,8 @@ pub(super) struct OnGpu {
     /// Simulated time of the newest state that came back, since then, s.
     returned: f64,
     owed: f64,
+    /// Time asked for that went with lost devices, s.
+    lost: f64,
     /// Time that had been asked for when that state was under way, s.
     answered: f64,
     /// Late frames in a row.
@@ -69,7 +71,7 @@ impl Simulation {
         gpu.late = if returned.owed > 1e-4 && returned.steps > 0 { gpu.late + 1 } else { 0 };
         (gpu.owed, gpu.answered) = (returned.owed, returned.asked);
         self.pace.steps = returned.steps;
-        self.pace.late = (returned.asked - returned.time).max(0.0);
+        self.pace.late = gpu.lost + (returned.asked - returned.time).max(0.0);
         if returned.time <= gpu.returned {
             return;
         }
@@ -102,7 +104,10 @@ impl Simulation {
         if !holds && gpu.held.was_lost() {
             gpu.start = next_start();
             gpu.began = self.water.time();
-            (gpu.asked, gpu.answered, gpu.returned, gpu.balance) = (0.0, 0.0, 0.0, self.water.balance());
+            gpu.balance = self.water.balance();
+            gpu.lost += (gpu.asked - gpu.returned).max(0.0);
+            self.pace.late = gpu.lost;
+            (gpu.asked, gpu.answered, gpu.returned, gpu.owed) = (0.0, 0.0, 0.0, 0.0);
         }
         let added = if holds { duration.as_secs_f64() } else { 0.0 };
         // What the GPU gets of it.

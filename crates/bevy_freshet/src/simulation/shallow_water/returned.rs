@@ -73,7 +73,7 @@ impl Held {
     pub(super) fn lose(&self) {
         let held = self.start.swap(0, Ordering::Relaxed);
         self.ground.store(0, Ordering::Relaxed);
-        self.lost.store(held != 0, Ordering::Relaxed);
+        self.lost.fetch_or(held != 0, Ordering::Relaxed);
     }
 
     fn put(&self, returned: Returned) {

@@ -3,6 +3,8 @@
 mod analytic;
 #[path = "../../../../freshet_hydro/tests/shallow_water/cases/mod.rs"]
 mod cases;
+#[path = "../../../../../tests/said.rs"]
+pub(super) mod said;
 
 use super::{super::tests::stage::Stage, *};
 use bevy::{
