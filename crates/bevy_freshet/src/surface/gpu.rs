@@ -113,6 +113,7 @@ impl GpuSurface {
     pub const FIELD: u32 = 32;
     pub const ICE: u32 = 4096;
     pub const SIMULATED: u32 = 8192;
+    pub const WALLED: u32 = 16384;
 }
 
 #[cfg(test)]
@@ -140,6 +141,7 @@ mod tests {
             ("FIELD", GpuSurface::FIELD),
             ("ICE", GpuSurface::ICE),
             ("SIMULATED", GpuSurface::SIMULATED),
+            ("WALLED", GpuSurface::WALLED),
         ];
         for (name, value) in flags {
             assert!(WGSL.contains(&format!("const FLAG_{name}: u32 = {value}u;")), "{name}");

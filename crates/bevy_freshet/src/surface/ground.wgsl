@@ -101,7 +101,16 @@ fn simulated_cells(place: vec2<f32>, level: i32) -> Cells {
     let last = vec2<f32>(textureDimensions(simulated, level)) - 1.0;
     let p = clamp(corner / texel - 0.5, vec2(0.0), last);
     let low = floor(p);
-    return Cells(vec2<i32>(low), vec2<i32>(min(low + 1.0, last)), p - low);
+    var cells = Cells(vec2<i32>(low), vec2<i32>(min(low + 1.0, last)), p - low);
+    // Nothing is seen through a wall: the water before it is as it is at its own cells.
+    if level == 0 && (surface.flags & types::FLAG_WALLED) != 0u {
+        let nw = textureLoad(simulated_slopes, cells.low, 0).zw;
+        let ne = textureLoad(simulated_slopes, vec2(cells.high.x, cells.low.y), 0).w;
+        let sw = textureLoad(simulated_slopes, vec2(cells.low.x, cells.high.y), 0).z;
+        let stands = vec2(nw.x + sw, nw.y + ne) > vec2(0.5);
+        cells.t = select(cells.t, floor(cells.t + 0.5), stands);
+    }
+    return cells;
 }
 
 fn simulated_in(place: vec2<f32>, level: i32) -> Simulated {

@@ -110,6 +110,7 @@ const FLAG_SUNLIGHT: u32 = 16u;
 const FLAG_FIELD: u32 = 32u;
 const FLAG_ICE: u32 = 4096u;
 const FLAG_SIMULATED: u32 = 8192u;
+const FLAG_WALLED: u32 = 16384u;
 
 const VIEW_WATER: u32 = 0u;
 const VIEW_REFLECTION: u32 = 1u;

@@ -244,6 +244,9 @@ pub(crate) fn write_ground(
     }
     if let Some(simulated) = &water.simulated {
         gpu.flags |= GpuSurface::SIMULATED;
+        if !simulated.field.walls().is_empty() {
+            gpu.flags |= GpuSurface::WALLED;
+        }
         gpu.simulated_age = simulated.age;
         gpu.simulated_size = simulated.field.size().as_vec2();
         gpu.simulated_cell = simulated.field.cell_size();

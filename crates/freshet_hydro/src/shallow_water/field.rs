@@ -16,6 +16,8 @@ pub struct Field {
     rising: Vec<f32>,
     /// Slope of the level in every wet cell.
     slopes: Vec<Vec2>,
+    /// Whether a wall stands above the water at the eastern and southern face of every cell; empty if there is none.
+    walls: Vec<[bool; 2]>,
     lowest: f32,
     highest: f32,
     steepest: f32,
@@ -71,9 +73,28 @@ impl Field {
             None => vec![0.0; cells.len()],
         };
         let mut field = Self { size, cell_size: water.cell_size(), cells, rising, ..Self::default() };
+        field.find_walls(water);
         field.find_slopes();
         field.find_bounds();
         field
+    }
+
+    fn find_walls(&mut self, water: &ShallowWater) {
+        let Some(crests) = water.crests() else { return };
+        let (columns, count) = (self.size.x as usize, self.cells.len());
+        let stands = |crest: f32, here: usize, there: usize| {
+            there < count && crest >= self.cells[here].x.max(self.cells[there].x)
+        };
+        let walls = crests.enumerate().map(|(i, [east, south])| [stands(east, i, i + 1), stands(south, i, i + columns)]);
+        let walls: Vec<[bool; 2]> = walls.collect();
+        if walls.iter().any(|wall| wall[0] || wall[1]) {
+            self.walls = walls;
+        }
+    }
+
+    /// Whether a wall stands above the water at the `axis` face (0 eastern, 1 southern) of a cell.
+    fn has_wall(&self, index: usize, axis: usize) -> bool {
+        self.walls.get(index).is_some_and(|wall| wall[axis])
     }
 
     fn find_slopes(&mut self) {
@@ -84,9 +105,13 @@ impl Field {
             if here.y <= WET {
                 return Vec2::ZERO;
             }
-            let level = |exists: bool, at: usize| if exists { beside(self.cells[at], here.x) } else { here.x };
-            let x = level(column + 1 < columns, index + 1) - level(column > 0, index.wrapping_sub(1));
-            let z = level(row + 1 < rows, index + columns) - level(row > 0, index.wrapping_sub(columns));
+            // The level across the `axis` face of the cell `of`, if there is one without a wall.
+            let level = |exists: bool, at: usize, of: usize, axis: usize| {
+                if exists && !self.has_wall(of, axis) { beside(self.cells[at], here.x) } else { here.x }
+            };
+            let (west, north) = (index.wrapping_sub(1), index.wrapping_sub(columns));
+            let x = level(column + 1 < columns, index + 1, index, 0) - level(column > 0, west, west, 0);
+            let z = level(row + 1 < rows, index + columns, index, 1) - level(row > 0, north, north, 1);
             Vec2::new(x, z) / (2.0 * self.cell_size)
         };
         self.slopes = (0..self.cells.len()).map(slope).collect();
@@ -125,6 +150,11 @@ impl Field {
         &self.slopes
     }
 
+    /// Whether a wall stands above the water at the eastern and southern face of every cell; empty if no wall does.
+    pub fn walls(&self) -> &[[bool; 2]] {
+        &self.walls
+    }
+
     /// Lowest and highest level of wet cells, m; 0 if all is dry.
     pub fn levels(&self) -> (f32, f32) {
         (self.lowest, self.highest)
@@ -150,7 +180,14 @@ impl Field {
         let high = (low + 1).min(last);
         let index = |x: u32, z: u32| (z * self.size.x + x) as usize;
         let around = [index(low.x, low.y), index(high.x, low.y), index(low.x, high.y), index(high.x, high.y)];
-        let t = p - p.floor();
+        let mut t = p - p.floor();
+        // Nothing is seen through a wall: the water before it is as it is at its own cells.
+        if self.has_wall(around[0], 0) || self.has_wall(around[2], 0) {
+            t.x = (t.x + 0.5).floor();
+        }
+        if self.has_wall(around[0], 1) || self.has_wall(around[1], 1) {
+            t.y = (t.y + 0.5).floor();
+        }
         let shares = [(1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y];
         let cells = around.map(|index| self.cells[index]);
         let wet = wet_shares(cells, shares)?;
@@ -173,7 +210,7 @@ impl Field {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::Grid;
+    use crate::{grid::Grid, shallow_water::DomainSide};
     use glam::{uvec2, vec2};
 
     /// A lake whose shore lies at x = 0, with a tilted surface.
@@ -208,6 +245,24 @@ mod tests {
     }
 
     #[test]
+    fn water_does_not_lean_over_a_wall_unless_it_flows_over_it() {
+        let bed = Grid::new(uvec2(8, 6), 1.0, vec![0.0; 48]).expect("a valid shape");
+        let mut water = ShallowWater::new(&bed).expect("a finite bed");
+        water.set_water(|at, _| (if at.x < 0.0 { 1.5 } else { 0.5 }, Vec2::ZERO)).expect("sane water");
+        let level = |water: &ShallowWater, x| Field::new(water, None, 0.0).sample(vec2(x, 0.2), 0.0).expect("water");
+        for row in 0..6 {
+            water.set_wall(uvec2(3, row), DomainSide::East, 2.0).expect("a cell");
+        }
+        let [near, far] = [-0.05, 0.05].map(|x| level(&water, x));
+        assert_eq!([near.level, far.level], [1.5, 0.5]);
+        assert_eq!([near.slope, far.slope], [Vec2::ZERO; 2]);
+        for row in 0..6 {
+            water.set_wall(uvec2(3, row), DomainSide::East, 1.0).expect("a cell");
+        }
+        assert!((level(&water, 0.0).level - 1.0).abs() < 1e-6, "a weir is under water");
+    }
+
+    #[test]
     fn bounds_are_those_of_wet_cells() {
         let field = lake();
         let (lowest, highest) = field.levels();
@@ -221,9 +276,9 @@ mod tests {
         let mut water = ShallowWater::new(&bed).expect("a finite bed");
         water.fill(1.0).expect("a sane level");
         let before = Field::new(&water, None, 0.0);
-        water.fill(1.2).expect("a sane level");
+        water.fill(1.25).expect("a sane level");
         let now = Field::new(&water, Some(&before), 0.5);
         let level = |age| now.sample(Vec2::ZERO, age).expect("water").level;
-        assert!((level(0.0) - 1.2).abs() < 1e-6 && (level(0.25) - 1.3).abs() < 1e-5);
+        assert!((level(0.0) - 1.25).abs() < 1e-6 && (level(0.25) - 1.375).abs() < 1e-5);
     }
 }

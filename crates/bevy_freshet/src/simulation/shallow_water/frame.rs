@@ -17,7 +17,7 @@ use std::sync::Arc;
 #[derive(Component, Clone, Debug)]
 pub(crate) struct ShallowFrame {
     pub work: ShallowWork,
-    /// Level (m), depth (m) and velocity (m/s) of every cell; and the slope of the level.
+    /// Level (m), depth (m) and velocity (m/s) of every cell; and the slope of the level, and where walls stand above it.
     pub pictures: [AssetId<Image>; 2],
 }
 

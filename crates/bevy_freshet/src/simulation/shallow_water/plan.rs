@@ -102,9 +102,11 @@ fn draw(field: &Field, [level, slopes]: [&GpuImage; 2], queue: &RenderQueue) {
     };
     let cells: Vec<u8> = field.cells().iter().flat_map(|cell| cell.to_array()).flat_map(f32::to_le_bytes).collect();
     write(level, &cells, 16);
-    let half =
-        |slope: &Vec2| [slope.x, slope.y, 0.0, 0.0].map(half::f16::from_f32).map(half::f16::to_le_bytes).concat();
-    let steep: Vec<u8> = field.slopes().iter().flat_map(half).collect();
+    let half = |(index, slope): (usize, &Vec2)| {
+        let [east, south] = field.walls().get(index).copied().unwrap_or_default().map(f32::from);
+        [slope.x, slope.y, east, south].map(half::f16::from_f32).map(half::f16::to_le_bytes).concat()
+    };
+    let steep: Vec<u8> = field.slopes().iter().enumerate().flat_map(half).collect();
     write(slopes, &steep, 8);
 }
 
@@ -222,5 +224,5 @@ fn run(plan: &Plan, stages: &Stages, cache: &PipelineCache, pass: &mut ComputePa
             dispatch(stages.push, &pushes[step as usize % 2], workgroups(plan.pushed));
         }
     }
-    dispatch(stages.show, &plan.groups[0], plan.texels);
+    dispatch(stages.show[walls], &plan.groups[0], plan.texels);
 }

@@ -1,11 +1,25 @@
 // Stage: pictures of the water for the surface's shader. The twin is `Field` in `freshet_hydro::shallow_water`.
-#import freshet::simulation::shallow_water::bindings::{numbers, state, bed}
+#import freshet::simulation::shallow_water::bindings::{numbers, state, bed, extras}
 #import freshet::simulation::shallow_water::cells::primitive
 
 @group(1) @binding(0) var picture: texture_storage_2d<rgba32float, write>;  // level, depth (m), velocity (m/s)
-@group(1) @binding(1) var slopes: texture_storage_2d<rgba16float, write>;   // slope of the level
+@group(1) @binding(1) var slopes: texture_storage_2d<rgba16float, write>;   // slope of the level; 1 where a wall stands above it in the east and south
 
 const WET: f32 = 1e-3; // units: m
+const EAST: vec2<i32> = vec2(1, 0);
+const SOUTH: vec2<i32> = vec2(0, 1);
+
+// Whether a wall stands above the water between cell `at` and the one `to` its east (1, 0) or south (0, 1).
+fn has_wall(at: vec2<i32>, to: vec2<i32>) -> bool {
+#ifdef WALLS
+    if all(at >= vec2(0)) && all(at + to < numbers.size) {
+        let i = at.y * numbers.size.x + at.x;
+        let there = primitive(i + to.y * numbers.size.x + to.x).y;
+        return select(extras[i].y, extras[i].x, to.x > 0) >= max(primitive(i).y, there);
+    }
+#endif
+    return false;
+}
 
 // The level of a cell as it counts beside water at `level`: a dry cell above it is a bank, one below it is ground towards which
 // a front falls.
@@ -15,6 +29,14 @@ fn beside(level: f32, at: vec2<i32>) -> f32 {
     }
     let there = primitive(at.y * numbers.size.x + at.x);
     return select(min(there.y, level), there.y, there.x > WET);
+}
+
+// The level of the cell `there`, across the face that cell `of` has `to` its east or south, beside water at `level`.
+fn across(level: f32, of: vec2<i32>, there: vec2<i32>, to: vec2<i32>) -> f32 {
+    if has_wall(of, to) {
+        return level;
+    }
+    return beside(level, there);
 }
 
 @compute @workgroup_size(8, 8)
@@ -27,9 +49,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     textureStore(picture, at, vec4(here.y, here.x, here.zw));
     var steep = vec2(0.0);
     if here.x > WET {
-        let x = beside(here.y, at + vec2(1, 0)) - beside(here.y, at - vec2(1, 0));
-        let z = beside(here.y, at + vec2(0, 1)) - beside(here.y, at - vec2(0, 1));
-        steep = vec2(x, z) / (2.0 * numbers.cell);
+        let east = across(here.y, at, at + EAST, EAST);
+        let west = across(here.y, at - EAST, at - EAST, EAST);
+        let south = across(here.y, at, at + SOUTH, SOUTH);
+        let north = across(here.y, at - SOUTH, at - SOUTH, SOUTH);
+        steep = vec2(east - west, south - north) / (2.0 * numbers.cell);
     }
-    textureStore(slopes, at, vec4(steep, 0.0, 0.0));
+    let walls = select(vec2(0.0), vec2(1.0), vec2(has_wall(at, EAST), has_wall(at, SOUTH)));
+    textureStore(slopes, at, vec4(steep, walls));
 }

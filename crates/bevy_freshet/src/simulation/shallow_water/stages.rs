@@ -30,8 +30,8 @@ pub(super) struct Stages {
     pub steps: [[Step; 2]; 2],
     pub push: CachedComputePipelineId,
     pub push_layout: BindGroupLayoutDescriptor,
-    /// Binds the pictures as well.
-    pub show: CachedComputePipelineId,
+    /// Without and with walls; binds the pictures as well.
+    pub show: [CachedComputePipelineId; 2],
     pub pictures: BindGroupLayoutDescriptor,
     pub coarsen: CachedComputePipelineId,
     pub coarsen_layout: BindGroupLayoutDescriptor,
@@ -48,7 +48,8 @@ impl Stages {
     pub fn are_ready(&self, cache: &PipelineCache) -> bool {
         let steps = self.steps.iter().flatten().flat_map(|step| [step.step, step.border]);
         steps
-            .chain([self.begin, self.push, self.show, self.coarsen])
+            .chain(self.show)
+            .chain([self.begin, self.push, self.coarsen])
             .all(|stage| cache.get_compute_pipeline(stage).is_some())
     }
 }
@@ -76,12 +77,16 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
         border: stage("water_shallow_border", &border, "main", defines),
     };
     let pictures = pictures_layout();
-    let show = cache.queue_compute_pipeline(ComputePipelineDescriptor {
-        label: Some("water_shallow_show".into()),
-        layout: vec![layout.clone(), pictures.clone()],
-        shader: load_embedded_asset!(&*assets, "show.wgsl"),
-        entry_point: Some("main".into()),
-        ..default()
+    let shader = load_embedded_asset!(&*assets, "show.wgsl");
+    let show = [&[][..], &["WALLS"]].map(|defines: &[&str]| {
+        cache.queue_compute_pipeline(ComputePipelineDescriptor {
+            label: Some("water_shallow_show".into()),
+            layout: vec![layout.clone(), pictures.clone()],
+            shader: shader.clone(),
+            shader_defs: defines.iter().copied().map(ShaderDefVal::from).collect(),
+            entry_point: Some("main".into()),
+            ..default()
+        })
     });
     let (push_layout, coarsen_layout) = (push_layout(), coarsen_layout());
     let lone = |label: &'static str, layout: &BindGroupLayoutDescriptor, shader: Handle<Shader>| {
