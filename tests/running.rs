@@ -10,7 +10,7 @@ use bevy_freshet::{body::Balance, prelude::*};
 use std::time::Duration;
 
 /// A column that falls in a basin of 20 m × 20 m.
-const START: SimulationStart =
+pub const START: SimulationStart =
     SimulationStart::Column { at: vec2(-10.0, 0.0), half_size: vec2(10.0, 20.0), level: 0.0 };
 /// Its volume, m³.
 const VOLUME: f64 = 10.0 * 20.0 * 2.0;

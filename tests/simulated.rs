@@ -279,6 +279,35 @@ fn the_height_that_is_drawn_is_the_height_that_is_asked_for_on_both_backends() {
     assert!(off < 0.02, "backends differ by {off} m");
 }
 
+/// Behind a wall the water stands higher than before it, drawn and asked for, as near to it as the mesh can show.
+#[test]
+fn the_water_does_not_lean_over_a_wall() {
+    for backend in [SimulationBackend::Cpu, SimulationBackend::Gpu] {
+        let mut stage = Stage::new();
+        stage.app.insert_resource(Time::<Fixed>::from_hz(60.0));
+        let (water, waves, surface, optics) = still_water(Vec2::splat(12.0));
+        let surface = WaterSurface { view: SurfaceView::Height, cell: 0.05, cells: 256, mesh_error: 0.0, ..surface };
+        let settings = WaterSimulation { cell_size: 0.4, backend, ground: -1.0, ..default() };
+        let spring = WaterSource { at: vec2(-3.0, 0.0), radius: 2.5, rate: 18.0.into() };
+        let wall = WaterWall { from: vec2(0.0, -6.0), to: vec2(0.0, 6.0), crest: bevy_freshet::body::CLOSED };
+        let around = (WaterSources { sources: vec![spring] }, WaterWalls { walls: vec![wall] });
+        stage.spawn((water, waves, surface, optics, settings, around, Transform::from_xyz(0.0, LEVEL, 0.0)));
+        stage.settle();
+        stage.run(1.5);
+        let camera = stage.camera_above(vec3(0.0, LEVEL, 0.0), 6.0);
+        let samples = heights(&mut stage, camera, Vec2::ZERO);
+        // The mesh goes from one side to the other within a cell, 0.05 m.
+        let beside = |from: f32, to: f32| samples.iter().filter(move |(at, ..)| (from..to).contains(&at.x));
+        for (place, drawn, queried) in beside(-9.0, -0.06).chain(beside(0.06, 9.0)) {
+            assert!((drawn - queried).abs() < 4e-3, "{backend:?} {place}: drawn {drawn}, queried {queried}");
+        }
+        let highest = beside(0.06, 0.2).map(|sample| sample.1.abs()).fold(0.0, f32::max);
+        let lowest = beside(-0.2, -0.06).map(|sample| sample.1).fold(f32::INFINITY, f32::min);
+        println!("{backend:?}: at least {lowest} m behind the wall, at most {highest} m before it");
+        assert!(lowest > 0.1 && highest < 1e-5);
+    }
+}
+
 #[test]
 fn a_part_of_a_water_is_drawn_as_it_is_asked_for() {
     let area = Some(Rect::new(-9.0, -1.0, 1.5, 9.0));

@@ -1,8 +1,8 @@
 //! Water that the GPU simulates: when its device is lost, beside other waters, and while others read it.
 use crate::{
-    running::{Falling, app_on, state},
+    running::{Falling, START, app_on, state},
     simulated::{all_at, at, basin, run},
-    stage::Hurried,
+    stage::{Hurried, Stage, still_water},
     waves::LEVEL,
 };
 use bevy::{
@@ -56,19 +56,24 @@ fn frame(falling: &mut Falling) {
 #[derive(Resource)]
 struct Devices(u32);
 
-fn devices(app: &App) -> u32 {
-    app.sub_app(RenderApp).world().resource::<Devices>().0
+/// Lets the engine make another device if one is lost, and counts them.
+fn recover(app: &mut App) {
+    app.insert_resource(RenderErrorHandler(|_, _, _| RenderErrorPolicy::Recover(default())));
+    let render_app = app.sub_app_mut(RenderApp);
+    render_app.insert_resource(Devices(0));
+    render_app.add_systems(RenderStartup, |mut devices: ResMut<Devices>| devices.0 += 1);
 }
 
-/// Destroys the device, and returns the number of frames until the engine has made another one.
-fn lose_device(falling: &mut Falling) -> u32 {
-    let before = devices(&falling.app);
-    let lost = falling.app.world().resource::<RenderDevice>();
+/// Destroys the device, and returns the number of frames until the engine has made another one; each is `frame`.
+fn lose_device<T>(of: &mut T, app: impl Fn(&T) -> &App, mut frame: impl FnMut(&mut T)) -> u32 {
+    let devices = |app: &App| app.sub_app(RenderApp).world().resource::<Devices>().0;
+    let before = devices(app(of));
+    let lost = app(of).world().resource::<RenderDevice>();
     lost.wgpu_device().destroy();
     lost.poll(PollType::wait_indefinitely()).unwrap();
     for frames in 1..2000 {
-        frame(falling);
-        if devices(&falling.app) > before {
+        frame(of);
+        if devices(app(of)) > before {
             return frames;
         }
         // No frame is drawn meanwhile, and the engine makes the device beside them.
@@ -84,14 +89,11 @@ fn a_water_outlives_the_device_that_simulates_it() {
     let sources = WaterSources { sources: vec![source] };
     let mut falling = Falling::on(SimulationBackend::Gpu);
     falling.app.world_mut().entity_mut(falling.water).insert(sources.clone());
-    falling.app.insert_resource(RenderErrorHandler(|_, _, _| RenderErrorPolicy::Recover(default())));
-    let render_app = falling.app.sub_app_mut(RenderApp);
-    render_app.insert_resource(Devices(0));
-    render_app.add_systems(RenderStartup, |mut devices: ResMut<Devices>| devices.0 += 1);
+    recover(&mut falling.app);
     run(&mut falling.app, 1.0);
     for _ in 0..2 {
         let before = falling.state();
-        let without = lose_device(&mut falling);
+        let without = lose_device(&mut falling, |falling| &falling.app, frame);
         (0..60).for_each(|_| frame(&mut falling));
         let now = falling.state();
         println!("{without} frames without a device: {} s, then {} s and {} s late", before.time, now.time, now.late);
@@ -110,6 +112,27 @@ fn a_water_outlives_the_device_that_simulates_it() {
     let off = apart(&found, &levels(&mut twin.app, 0.0, Vec2::splat(20.0)));
     println!("{off:e} m from a water that has lost nothing, {:e} m³ too much", state.error());
     assert!(off < 1e-4, "{off}");
+}
+
+#[test]
+fn the_picture_outlives_the_device_too() {
+    let mut stage = Stage::new();
+    recover(&mut stage.app);
+    stage.paint(Sphere::new(0.5), LinearRgba::RED, Transform::from_xyz(2.0, LEVEL, 0.0));
+    let (.., surface, optics) = still_water(Vec2::ZERO);
+    stage.spawn((
+        basin(WaterSimulation { start: START, backend: SimulationBackend::Gpu, ..default() }),
+        WaterSurface { view: SurfaceView::Height, ..surface },
+        optics,
+    ));
+    stage.settle();
+    stage.run(0.5);
+    let camera = stage.camera_above(vec3(0.0, LEVEL, 0.0), 6.0);
+    let before = stage.picture(camera);
+    lose_device(&mut stage, |stage| &stage.app, |stage| stage.app.update());
+    assert!(stage.picture(camera).bits() == before.bits(), "while the clock stands still the water does");
+    stage.run(0.5);
+    assert!(stage.picture(camera).bits() != before.bits(), "and then it falls on");
 }
 
 /// Sizes (m), starts and places (world x) of three waters.

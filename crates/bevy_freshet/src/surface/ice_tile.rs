@@ -62,7 +62,7 @@ fn ice_tile() -> Image {
     }
     let extent = Extent3d { width: SIZE as u32, height: SIZE as u32, depth_or_array_layers: 1 };
     let format = TextureFormat::Rgba8Unorm;
-    let mut image = Image::new_uninit(extent, TextureDimension::D2, format, RenderAssetUsages::RENDER_WORLD);
+    let mut image = Image::new_uninit(extent, TextureDimension::D2, format, RenderAssetUsages::default());
     image.texture_descriptor.label = Some("water_ice");
     image.texture_descriptor.mip_level_count = SIZE.ilog2() + 1;
     image.data = Some(data);

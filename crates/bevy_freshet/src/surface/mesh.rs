@@ -73,7 +73,7 @@ impl Builder {
     fn mesh(self, cell: f32) -> Mesh {
         let position = |p: &I64Vec2| vec3(p.x as f32 * cell, 0.0, p.y as f32 * cell);
         let positions: Vec<Vec3> = self.positions.iter().map(position).collect();
-        Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
+        Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
             .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
             .with_inserted_indices(Indices::U32(self.indices))
     }

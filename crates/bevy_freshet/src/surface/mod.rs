@@ -33,8 +33,9 @@ use bevy::{
     asset::embedded_asset,
     camera::{CameraUpdateSystems, visibility::VisibilitySystems},
     light::SimulationLightSystems,
+    pbr::ViewTransmissionTexture,
     prelude::*,
-    render::RenderApp,
+    render::{RenderApp, RenderStartup},
     shader::load_shader_library,
 };
 
@@ -188,5 +189,15 @@ impl Plugin for SurfacePlugin {
                         .before(VisibilitySystems::MarkNewlyHiddenEntitiesInvisible),
                 ),
             );
+        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+            render_app.add_systems(RenderStartup, forget_copies);
+        }
+    }
+}
+
+/// After a lost device, views keep the copy of the colour that they had there until something reads one again, and Bevy binds it.
+fn forget_copies(mut commands: Commands, views: Query<Entity, With<ViewTransmissionTexture>>) {
+    for view in &views {
+        commands.entity(view).remove::<ViewTransmissionTexture>();
     }
 }

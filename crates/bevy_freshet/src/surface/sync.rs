@@ -154,7 +154,7 @@ fn shared<T, U: Clone>(known: &mut Vec<(Arc<Grid<T>>, U)>, grid: &Arc<Grid<T>>, 
 
 fn grid_image(label: &'static str, size: UVec2, format: TextureFormat, data: Vec<u8>) -> Image {
     let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
-    let mut image = Image::new(extent, TextureDimension::D2, data, format, RenderAssetUsages::RENDER_WORLD);
+    let mut image = Image::new(extent, TextureDimension::D2, data, format, RenderAssetUsages::default());
     image.texture_descriptor.label = Some(label);
     image
 }

@@ -18,7 +18,7 @@ pub(super) fn repeating<const N: usize>(
     texels: Vec<[f32; N]>,
 ) -> Image {
     let extent = Extent3d { width: size as u32, height: size as u32, depth_or_array_layers: 1 };
-    let mut image = Image::new_uninit(extent, TextureDimension::D2, format, RenderAssetUsages::RENDER_WORLD);
+    let mut image = Image::new_uninit(extent, TextureDimension::D2, format, RenderAssetUsages::default());
     image.texture_descriptor.label = Some(label);
     image.texture_descriptor.mip_level_count = size.ilog2() + 1;
     let mut level = texels;

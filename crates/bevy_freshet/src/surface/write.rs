@@ -352,7 +352,7 @@ fn write_sky(
 fn white_cube() -> Image {
     let extent = Extent3d { width: 1, height: 1, depth_or_array_layers: 6 };
     let format = TextureFormat::Rgba8Unorm;
-    let mut image = Image::new_fill(extent, TextureDimension::D2, &[255; 4], format, RenderAssetUsages::RENDER_WORLD);
+    let mut image = Image::new_fill(extent, TextureDimension::D2, &[255; 4], format, RenderAssetUsages::default());
     image.texture_descriptor.label = Some("water_plain_sky");
     image.texture_view_descriptor =
         Some(TextureViewDescriptor { dimension: Some(TextureViewDimension::Cube), ..default() });

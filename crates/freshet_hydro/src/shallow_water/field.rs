@@ -85,7 +85,8 @@ impl Field {
         let stands = |crest: f32, here: usize, there: usize| {
             there < count && crest >= self.cells[here].x.max(self.cells[there].x)
         };
-        let walls = crests.enumerate().map(|(i, [east, south])| [stands(east, i, i + 1), stands(south, i, i + columns)]);
+        let walls =
+            crests.enumerate().map(|(i, [east, south])| [stands(east, i, i + 1), stands(south, i, i + columns)]);
         let walls: Vec<[bool; 2]> = walls.collect();
         if walls.iter().any(|wall| wall[0] || wall[1]) {
             self.walls = walls;
