@@ -184,6 +184,26 @@ fn the_book_of_volumes_closes() {
 }
 
 #[test]
+fn sources_that_come_and_go_stay_in_the_book() {
+    on_both(|mut falling| {
+        falling.settings().rain = 500.0;
+        run(&mut falling.app, 1.0);
+        let spring = WaterSource { at: vec2(3.0, 2.0), radius: 2.0, rate: 3.0.into() };
+        falling.app.world_mut().entity_mut(falling.water).insert(WaterSources { sources: vec![spring] });
+        let begins = falling.state().time;
+        run(&mut falling.app, 2.0);
+        falling.app.world_mut().entity_mut(falling.water).insert(WaterSources::default());
+        let ends = falling.state().time;
+        run(&mut falling.app, 1.0);
+        let state = falling.state();
+        // What is asked of the GPU takes effect some frames later.
+        assert!((state.balance.sources - 3.0 * (ends - begins)).abs() < 0.5, "{state:?}");
+        assert!(state.balance.sources > 5.0 && state.balance.rain > 0.15, "{state:?}");
+        assert!(state.error().abs() < 1e-4, "{} m³", state.error());
+    });
+}
+
+#[test]
 fn a_water_that_cannot_keep_up_runs_late_and_says_so_once() {
     on_both(|mut falling| {
         falling.settings().speed = 100.0;

@@ -135,6 +135,40 @@ fn a_body_pushes_the_water_before_it() {
 }
 
 #[test]
+fn a_body_that_drifts_with_a_uniform_current_pushes_nothing() {
+    let mut app = server();
+    let flow = WaterFlow::uniform(Vec2::X);
+    app.world_mut().spawn((basin(WaterSimulation { cell_size: 0.5, ..default() }), flow));
+    let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(Cuboid::new(2.0, 2.0, 2.0));
+    let body = app.world_mut().spawn((Mesh3d(mesh), DisturbsWater, Transform::from_xyz(-4.0, LEVEL, 0.0))).id();
+    for frame in 0..300 {
+        // Before it is followed it has no speed.
+        let x = -4.0 + frame as f32 / 60.0;
+        app.world_mut().get_mut::<Transform>(body).unwrap().translation.x = x;
+        run(&mut app, 1.01 / 60.0);
+    }
+    let off = (at(&mut app, 1.0, 0.0).unwrap().velocity.x - 1.0).abs();
+    assert!(off < 0.01, "{off} m/s");
+}
+
+#[test]
+fn a_water_that_grows_around_its_simulated_part_streams_into_it() {
+    let mut app = server();
+    let map = freshet_hydro::grid::Grid::from_fn(uvec2(160, 24), 1.0, |_| vec2(0.8, 0.0)).unwrap();
+    let settings = WaterSimulation { area: Some(Rect::new(-40.0, -10.0, 0.0, 10.0)), ..default() };
+    let pose = Transform::from_xyz(0.0, LEVEL, 0.0);
+    let water = (Water::new(vec2(80.0, 20.0)), WaterWaves::still(), settings, pose, WaterFlow::from_map(map));
+    let water = app.world_mut().spawn(water).id();
+    run(&mut app, 1.0);
+    app.world_mut().get_mut::<Water>(water).unwrap().size.x = 120.0;
+    run(&mut app, 20.0);
+    // What was the water's own side is a rim now: 0.8 m/s through 20 m × 2 m.
+    let state = app.world().get::<SimulationState>(water).unwrap();
+    let entered = -state.balance.left[0] / state.time;
+    assert!((entered / 32.0 - 1.0).abs() < 0.1, "{entered} m³/s");
+}
+
+#[test]
 fn a_part_of_a_water_flows_with_the_water_around_it() {
     let mut app = server();
     let map = freshet_hydro::grid::Grid::from_fn(uvec2(80, 24), 1.0, |_| vec2(0.8, 0.0)).unwrap();

@@ -282,7 +282,7 @@ fn what_reading_costs() {
     assert!(state(&app, water).time > 1.0 && read < unread.mul_f32(1.03), "{read:?} of {unread:?}");
 }
 
-fn median(spent: &mut Vec<Duration>) -> Duration {
+fn median(spent: &mut [Duration]) -> Duration {
     spent.sort();
     spent[spent.len() / 2]
 }

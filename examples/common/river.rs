@@ -38,9 +38,8 @@ pub const LEVEL: f32 = 0.8;
 const START: Vec2 = Vec2::new(-98.0, 196.0);
 /// Where the river leaves the terrain, and a sensor returns bodies to the start.
 const END: Vec2 = Vec2::new(-2.0, 446.0);
-/// Time in which the simulated river fills, and in which the plain is flooded, s.
-const FILLING: f32 = 3600.0;
-const FLOODING: f32 = 900.0;
+/// Time in a window in which the simulated river comes to rest, s.
+const SECONDS: f32 = 60.0;
 /// The ends of the footbridge.
 const BRIDGE: [Vec2; 2] = [Vec2::new(-107.0, 228.5), Vec2::new(-75.0, 223.0)];
 /// Where the boat lies.
@@ -58,6 +57,13 @@ pub enum Flow {
     Simulated,
     /// As simulated, but the valley is full behind a dike, whose sluice opens: the plain below is flooded
     Sluice,
+}
+
+impl Flow {
+    /// Simulated time in which it comes to rest, s.
+    fn duration(self) -> f32 {
+        if self == Self::Sluice { 900.0 } else { 3600.0 }
+    }
 }
 
 /// An app with the river, seen as the options say.
@@ -149,8 +155,8 @@ fn river(mut commands: Commands, scene: Res<Scene>, options: Res<Options>) {
     ));
     match scene.flow {
         Flow::Map => river.insert(scene.map.clone()),
-        Flow::Simulated => river.insert(simulated(&options, SimulationStart::Dry, FILLING)),
-        Flow::Sluice => river.insert((simulated(&options, sluice::start(), FLOODING), sluice::walls())),
+        Flow::Simulated => river.insert(simulated(&options, scene.flow, SimulationStart::Dry)),
+        Flow::Sluice => river.insert((simulated(&options, scene.flow, sluice::start()), sluice::walls())),
     };
     if scene.view.freezing > 0.0 {
         river.insert(WaterIce { freezing: scene.view.freezing, ..default() });
@@ -163,22 +169,31 @@ fn river(mut commands: Commands, scene: Res<Scene>, options: Res<Options>) {
     ));
 }
 
-/// The simulated river for so many seconds: 25 m³/s come down from its upper arms, and at its mouth the sea stands at the still level.
-fn simulated(options: &Options, start: SimulationStart, duration: f32) -> impl Bundle {
+/// The simulated river: 25 m³/s come down from its upper arms, and at its mouth the sea stands at the still level.
+fn simulated(options: &Options, flow: Flow, start: SimulationStart) -> impl Bundle {
     let spring = WaterSource { at: vec2(-42.0, -88.0), radius: 10.0, rate: 25.0.into() };
     let mouth = WaterEdge { side: DomainSide::South, from: -24.0, to: 20.0, edge: Edge::Level(0.0.into()) };
     // In a window it is watched; a picture is to show what it comes to.
-    let seconds = if options.out.is_some() { options.frames as f32 * common::FRAME as f32 } else { 60.0 };
-    let settings =
-        WaterSimulation { cell_size: 2.0, start, speed: (duration / seconds).max(1.0), max_steps: 1024, ..default() };
+    let seconds = if options.out.is_some() { options.frames as f32 * common::FRAME as f32 } else { SECONDS };
+    let settings = WaterSimulation {
+        cell_size: 2.0,
+        start,
+        speed: (flow.duration() / seconds).max(1.0),
+        max_steps: 1024,
+        ..default()
+    };
     (settings, WaterSources { sources: vec![spring] }, WaterEdges { parts: vec![mouth], ..default() })
 }
 
 /// Once the simulated river has come to rest its clock runs as all others do.
-fn slow_down(time: Res<Time>, options: Res<Options>, mut rivers: Query<&mut WaterSimulation>) {
-    let filled = if options.out.is_some() { f32::INFINITY } else { 60.0 };
-    for mut river in rivers.iter_mut().filter(|river| river.speed > 1.0 && time.elapsed_secs() > filled) {
-        river.speed = 1.0;
+fn slow_down(options: Res<Options>, scene: Res<Scene>, mut rivers: Query<(&SimulationState, &mut WaterSimulation)>) {
+    let (duration, is_picture) = (scene.flow.duration(), options.out.is_some());
+    for (state, mut river) in &mut rivers {
+        let has_rested = !is_picture && state.time > duration.into();
+        // Only once: what the panel sets afterwards stays.
+        if has_rested && river.speed == duration / SECONDS {
+            river.speed = 1.0;
+        }
     }
 }
 

@@ -47,6 +47,7 @@ pub(crate) struct IceMap {
 struct Causes {
     half_size: Vec2,
     level: f32,
+    flat_ground: Option<f32>,
     bed: Option<ResolvedBed>,
     drift: Vec2,
     flow: Option<(Arc<Grid<Vec2>>, f32)>,
@@ -61,7 +62,8 @@ const LEVEL_STEP: f32 = 0.1;
 impl Causes {
     fn new(water: &ResolvedWater, freezing: Freezing) -> Self {
         let &ResolvedWater { half_size, level, drift, ref bed, ref flow, .. } = water;
-        Self { half_size, level, bed: bed.clone(), drift, flow: flow.clone(), freezing }
+        let flat_ground = water.flat_ground;
+        Self { half_size, level, flat_ground, bed: bed.clone(), drift, flow: flow.clone(), freezing }
     }
 
     /// Whether a map made from `self` still serves for `other`.
@@ -80,8 +82,10 @@ impl Causes {
             (Some((a, scale)), Some((b, other_scale))) => Arc::ptr_eq(a, b) && scale == other_scale,
             (a, b) => a.is_none() && b.is_none(),
         };
-        let same_rest =
-            self.half_size == other.half_size && self.drift == other.drift && self.freezing == other.freezing;
+        let same_rest = self.flat_ground == other.flat_ground
+            && self.half_size == other.half_size
+            && self.drift == other.drift
+            && self.freezing == other.freezing;
         same_bed && same_flow && same_rest
     }
 }
@@ -110,7 +114,9 @@ fn map_of(water: &ResolvedWater, freezing: &Freezing) -> Option<Grid<f32>> {
     let finest = water.bed.as_ref().map_or(0.25 * freezing.unevenness_size, |bed| bed.elevations.cell_size());
     let cell = finest.max((extent.x * extent.y / MOST_CELLS).sqrt()).max(extent.max_element() / 2048.0);
     let size = (extent / cell).ceil().max(Vec2::ONE).as_uvec2();
-    let site = |place| Site { depth: water.ground_depth(place), speed: water.open_current(place).length() };
+    // What freezes is chosen by the still water, also where it is simulated.
+    let still_current = |place| water.drift + water.mapped_current(place);
+    let site = |place| Site { depth: water.ground_depth(place), speed: still_current(place).length() };
     ice::order_map(size, cell, freezing, site).ok()
 }
 

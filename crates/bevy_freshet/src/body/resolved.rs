@@ -70,10 +70,13 @@ impl ResolvedWater {
         self.ground_depth(place) + self.risen(place)
     }
 
-    /// How far the ground at local `place` lies below the still level, m: infinite without a bed if it is not simulated, minus
+    /// How far the ground at local `place` lies below the still level, m: infinite without a bed where it is not simulated, minus
     /// infinity where a bed has no data.
     pub fn ground_depth(&self, place: Vec2) -> f32 {
-        let Some(bed) = &self.bed else { return self.flat_ground.unwrap_or(f32::INFINITY) };
+        let Some(bed) = &self.bed else {
+            let is_simulated = |_: &f32| self.simulated.as_ref().is_some_and(|it| it.area.share(place) > 0.0);
+            return self.flat_ground.filter(is_simulated).unwrap_or(f32::INFINITY);
+        };
         let elevation = bed.elevations.sample(bed.bed_from_local.transform_point2(place));
         if elevation.is_nan() { f32::NEG_INFINITY } else { self.level - (bed.base + elevation) }
     }

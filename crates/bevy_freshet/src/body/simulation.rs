@@ -10,7 +10,7 @@ pub use freshet_hydro::shallow_water::{CLOSED, DomainSide, Edge, Series};
 /// What acts on it from outside are [`WaterEdges`], [`WaterSources`] and [`WaterWalls`] beside it. All levels are in metres over
 /// the water's still level, the height of its entity.
 ///
-/// Changing `cell_size`, `start` or `area`, or the water's size, begins anew; all else may change while it runs. [`SimulationState`] says
+/// Changing `cell_size`, `start`, `area` or `backend`, or the water's size, begins anew; all else may change while it runs. [`SimulationState`] says
 /// how it stands, [`ResetSimulation`](super::ResetSimulation) begins anew, and while it is paused
 /// [`StepSimulation`](super::StepSimulation) takes it a step further.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub struct WaterSimulation {
     pub start: SimulationStart,
     /// Manning's n of the bed, s/m^⅓, ≥ 0. Default 0.03: a clean winding river (Chow 1959).
     pub manning: f32,
-    /// Elevation of the ground where there is no bed, m over the still level. Default −2.
+    /// Elevation of the ground where it is simulated and there is no bed, m over the still level. Default −2.
     pub ground: f32,
     /// Rain, mm/h, ≥ 0. Default 0.
     pub rain: f32,
@@ -56,7 +56,8 @@ pub enum SimulationBackend {
     Auto,
     /// In compute shaders, once a frame. Bodies and queries know the state of a few frames ago, carried on to the present.
     Gpu,
-    /// On the CPU, in every fixed step. Bodies and queries know the present. The same on every machine.
+    /// On the CPU, in every fixed step. Bodies and queries know the present. The same on every
+    /// machine, unless bodies push it: they are seen once a frame.
     Cpu,
 }
 

@@ -155,7 +155,9 @@ impl Pen {
         let cut = self.measure()?;
         if let (Some(raster), Some((settings, simulated))) = (simulation, &mut disturbed.simulated) {
             let factor = reported.clamp(disturbed.entity, "WaterSimulation::push", settings.push, 0.0..=10.0, 1.0);
-            let cells = self.cells(&raster, &cut, motion, water);
+            // The uniform current is added to the simulated one: bodies that drift with it push nothing.
+            let relative = |cell: SilhouetteCell| SilhouetteCell { velocity: cell.velocity - water.drift, ..cell };
+            let cells = self.cells(&raster, &cut, motion, water).map(relative);
             push::push(cells, factor, cut.area, raster.size, &mut simulated.pushes);
         }
         disturbed.deposits.silhouettes.extend(self.cells(&field?, &cut, motion, water));

@@ -182,7 +182,7 @@ fn current(place: vec2<f32>, depth: f32) -> vec2<f32> {
 // How far the ground at local `rest` lies below the still level, m: very far without a bed if it is not simulated, far above where it has no data.
 fn ground_depth(rest: vec2<f32>) -> f32 {
     if (surface.flags & types::FLAG_BED) == 0u {
-        return surface.flat_depth;
+        return select(1e6, surface.flat_depth, simulated_share(rest) > 0.0);
     }
     let place = surface.bed_from_local * rest + surface.bed_origin;
     let c = cells_around(place, surface.bed_cell, surface.bed_size);

@@ -20,24 +20,27 @@ use glam::{UVec2, Vec2};
 pub struct Push {
     /// Column and row of the cell; each at most once.
     pub cell: UVec2,
-    /// ½ C D/L, ≥ 0.
+    /// ½ C D/L, from 0 to 10⁶.
     pub strength: f32,
     /// Velocity v of the body (x, z), m/s.
     pub velocity: Vec2,
 }
 
+/// Strengths from this on are taken for a mistake.
+const STRONGEST: f32 = 1e6;
+
 impl ShallowWater {
     /// Replaces what bodies do to the water in every step from now on.
     ///
     /// # Errors
-    /// [`ShallowWaterError::Number`] if a cell is outside, a strength is negative or not finite, or a velocity is not below 10 km/s.
+    /// [`ShallowWaterError::Number`] if a cell is outside, a strength is negative or not below 10⁶, or a velocity is not below 10 km/s.
     pub fn set_pushes(&mut self, pushes: &[Push]) -> Result<(), ShallowWaterError> {
         for push in pushes {
             if push.cell.cmpge(self.size()).any() {
                 return Err(number("the cell of a push", "inside the domain", push.cell.max_element() as f32));
             }
-            if !(push.strength.is_finite() && push.strength >= 0.0) {
-                return Err(number("the strength of a push", "finite and not negative", push.strength));
+            if !(0.0..STRONGEST).contains(&push.strength) {
+                return Err(number("the strength of a push", "not negative and below 10⁶", push.strength));
             }
             if !(push.velocity.is_finite() && push.velocity.abs().max_element() < FASTEST) {
                 return Err(number("the speed of a push", "finite and below 10 km/s", push.velocity.length()));

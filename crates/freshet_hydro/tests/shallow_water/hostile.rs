@@ -3,7 +3,7 @@ use super::cases::{land, still};
 use freshet_hydro::{
     grid::{Grid, GridError},
     shallow_water::{
-        CLOSED, DomainSide, Edge, EdgePart, PointSource, Restored, Series, ShallowWater, ShallowWaterError,
+        CLOSED, DomainSide, Edge, EdgePart, PointSource, Push, Restored, Series, ShallowWater, ShallowWaterError,
     },
 };
 use glam::{UVec2, Vec2};
@@ -187,6 +187,11 @@ fn numbers_out_of_range_are_refused() {
     for number in [f32::NAN, f32::INFINITY, -1.0] {
         assert!(water.set_manning(number).is_err() && water.set_courant(number).is_err(), "{number}");
     }
+    for number in [f32::NAN, f32::INFINITY, 1e30] {
+        let push = |strength: f32, speed: f32| Push { cell: UVec2::ZERO, strength, velocity: Vec2::new(speed, 0.0) };
+        assert!(water.set_pushes(&[push(number, 1.0)]).is_err() && water.set_pushes(&[push(1.0, number)]).is_err());
+    }
+    assert!(water.set_pushes(&[Push { cell: UVec2::splat(1000), ..Default::default() }]).is_err());
     for number in [f32::NAN, f32::INFINITY] {
         assert!(water.set_rain(number).is_err(), "{number}");
         let source = |at: Vec2, radius: f32, rate: f32| vec![PointSource { at, radius, rate: rate.into() }];

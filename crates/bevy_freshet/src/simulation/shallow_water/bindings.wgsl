@@ -53,7 +53,7 @@ struct Leaving {
 @group(0) @binding(6) var<storage, read> edges: array<Edge>;                    // of the western, eastern, northern, southern side
 @group(0) @binding(7) var<storage, read_write> leaving: array<Leaving>;         // through the same cells
 @group(0) @binding(8) var<storage, read> extras: array<vec4<f32>>;              // crests of the eastern and southern face (m), source (m/s)
-@group(0) @binding(9) var<storage, read_write> given: array<vec2<f32>>;         // depth that sources gave, and its carry, units: m
+@group(0) @binding(9) var<storage, read_write> given: array<vec2<f32>>;         // depth that sources gave beside rain, and its carry, units: m
 
 const WALL: u32 = 0u;
 const OPEN: u32 = 1u;

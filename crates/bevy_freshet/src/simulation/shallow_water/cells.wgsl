@@ -64,7 +64,7 @@ fn update(i: i32, faces: Faces, around: Around, dt: f32, counts: bool) -> f32 {
     let sum = max(depth + change, 0.0);
     let carry = change - (sum - depth);
 #ifdef SOURCES
-    given[i] = added_to(given[i], select(0.0, added, counts));
+    given[i] = added_to(given[i], select(0.0, added - dt * numbers.rain, counts));
 #endif
     // g h ∇η Δx
     let push_x = 0.5 * GRAVITY * (faces.west.x + faces.east.x) * (faces.east.y - faces.west.y);

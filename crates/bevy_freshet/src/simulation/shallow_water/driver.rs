@@ -56,6 +56,8 @@ pub(super) struct Simulation {
 #[derive(Clone, Debug, PartialEq)]
 struct MadeOf {
     domain: Domain,
+    /// Which sides have other water beyond them.
+    inner: [bool; 4],
     start: SimulationStart,
     backend: SimulationBackend,
 }
@@ -218,7 +220,12 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
     let cell = reported.clamp(entity, "WaterSimulation::cell_size", settings.cell_size, 1e-3..=1e5, 1.0);
     let area = usable_area(entity, resolved, settings, reported);
     let (domain, area) = Domain::new(area, cell);
-    let made_of = MadeOf { domain, start: settings.start, backend: settings.backend };
+    let made_of = MadeOf {
+        domain,
+        inner: area.per_blend.to_array().map(|per_blend| per_blend > 0.0),
+        start: settings.start,
+        backend: settings.backend,
+    };
     let fits = simulated.simulation.as_ref().is_some_and(|simulation| simulation.made_of == made_of);
     if simulated.asked.takes_reset() || !fits {
         simulated.simulation = begin(made_of, entity, resolved, settings, gpu, reported);
@@ -230,6 +237,7 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
     // Those of a simulation of another size are none of this one.
     if simulation.water.set_pushes(&simulated.pushes).is_err() {
         simulated.pushes.clear();
+        _ = simulation.water.set_pushes(&[]);
     }
     simulation.area = area;
     simulation.follow_ground(entity, resolved, settings, reported);
@@ -376,8 +384,11 @@ impl Simulation {
             }
         };
         let center = self.made_of.domain.center;
-        let rims = set_rims(&mut self.water, &self.area, resolved);
-        refuse("WaterEdges", rims.and(set_edges(&mut self.water, &wanted.edges, center)));
+        let same_edges = |before: &Applied| before.edges == wanted.edges && before.around == wanted.around;
+        if !before.as_ref().is_some_and(same_edges) {
+            let rims = set_rims(&mut self.water, &self.area, resolved);
+            refuse("WaterEdges", rims.and(set_edges(&mut self.water, &wanted.edges, center)));
+        }
         refuse("WaterSimulation::manning", self.water.set_manning(wanted.manning));
         // mm/h to m/s
         refuse("WaterSimulation::rain", self.water.set_rain(wanted.rain / 3.6e6));

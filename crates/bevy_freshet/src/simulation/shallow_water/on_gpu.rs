@@ -201,9 +201,7 @@ pub(super) fn balance(before: &Balance, returned: &Returned, water: &ShallowWate
     let rain = returned.rained * count * cell * cell;
     let mut balance = *before;
     balance.rain += rain;
-    if water.has_sources() {
-        balance.sources += returned.given * cell * cell - rain;
-    }
+    balance.sources += returned.given * cell * cell;
     let (columns, rows) = (water.size().x as usize, water.size().y as usize);
     let mut sides = returned.left.as_slice();
     for (left, length) in balance.left.iter_mut().zip([rows, rows, columns, columns]) {

@@ -81,7 +81,7 @@ pub(super) fn plan_steps(
             _ => continue,
         };
         if let Some(ground) = work.ground.as_ref().filter(|ground| ground.version != state.ground) {
-            state.set_ground(&device, ground);
+            state.set_ground(&device, ground, work.has_sources);
         }
         state.upload(work, &device, &queue);
         let surroundings = Surroundings { stages: &stages, cache: &cache, device: &device };

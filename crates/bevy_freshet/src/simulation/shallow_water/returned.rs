@@ -50,7 +50,7 @@ pub(crate) struct Returned {
     pub fastest: f32,
     /// Depth of rain since then, m.
     pub rained: f64,
-    /// Depth that sources gave since then, summed over the cells, m.
+    /// Depth that sources gave since then, without rain, summed over the cells, m.
     pub given: f64,
     /// Volume per width that left through every cell of the sides, m².
     pub left: Vec<f64>,
@@ -139,7 +139,7 @@ pub(super) fn map_copies(mut states: Query<(&mut ShallowState, &super::ShallowFr
     for (mut state, frame) in &mut states {
         let Some(buffer) = state.copies.filled.take() else { continue };
         let super::ShallowWork::Gpu(work) = &frame.work else { continue };
-        let (parts, start, has_sources) = (Parts::of(&state), state.start, work.has_sources);
+        let (parts, start) = (Parts::of(&state), state.start);
         let (free, held, asked) = (state.copies.free.clone(), work.held.clone(), work.asked);
         let mapped = buffer.clone();
         buffer.slice(..).map_async(MapMode::Read, move |result| {
@@ -148,7 +148,7 @@ pub(super) fn map_copies(mut states: Query<(&mut ShallowState, &super::ShallowFr
                 return;
             }
             if held.start.load(Ordering::Relaxed) == start {
-                let returned = read(&mapped.slice(..).get_mapped_range(), &parts, start, has_sources);
+                let returned = read(&mapped.slice(..).get_mapped_range(), &parts, start);
                 held.put(Returned { asked, ..returned });
             }
             mapped.unmap();
@@ -157,10 +157,10 @@ pub(super) fn map_copies(mut states: Query<(&mut ShallowState, &super::ShallowFr
     }
 }
 
-fn read(bytes: &[u8], parts: &Parts, start: u64, has_sources: bool) -> Returned {
+fn read(bytes: &[u8], parts: &Parts, start: u64) -> Returned {
     let clock: GpuClock = parse(parts.slice(bytes, 0));
     let leaving: Vec<GpuLeaving> = parse(parts.slice(bytes, 1));
-    let given: Vec<Vec2> = if has_sources { parse(parts.slice(bytes, 2)) } else { Vec::new() };
+    let given: Vec<Vec2> = parse(parts.slice(bytes, 2));
     let sum = |pair: Vec2| f64::from(pair.x) + f64::from(pair.y);
     Returned {
         start,

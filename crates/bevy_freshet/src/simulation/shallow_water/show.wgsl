@@ -31,9 +31,9 @@ fn beside(level: f32, at: vec2<i32>) -> f32 {
     return select(min(there.y, level), there.y, there.x > WET);
 }
 
-// The level of the cell `there`, across the face that cell `of` has `to` its east or south, beside water at `level`.
-fn across(level: f32, of: vec2<i32>, there: vec2<i32>, to: vec2<i32>) -> f32 {
-    if has_wall(of, to) {
+// The level of the cell `there`, across the face that `cell` has `to` its east or south, beside water at `level`.
+fn across(level: f32, cell: vec2<i32>, there: vec2<i32>, to: vec2<i32>) -> f32 {
+    if has_wall(cell, to) {
         return level;
     }
     return beside(level, there);

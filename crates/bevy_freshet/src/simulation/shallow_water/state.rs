@@ -47,7 +47,6 @@ impl ShallowState {
         };
         let clock = GpuClock { fastest: UVec2::splat(start.fastest.to_bits()), ..default() };
         let cells = bytes_of_list(&start.cells);
-        let given = if !work.has_sources { 1 } else { start.cells.len() };
         let parity = |parity| {
             let mut uniform = UniformBuffer::from(UVec4::new(parity, 0, 0, 0));
             uniform.set_label(Some("water_shallow_parity"));
@@ -65,18 +64,18 @@ impl ShallowState {
             bed: buffer("water_shallow_bed", &[0; 4]),
             leaving: buffer("water_shallow_leaving", &bytes_of_list(&vec![GpuLeaving::default(); work.edges.len()])),
             extras: buffer("water_shallow_extras", &[0; 16]),
-            given: buffer("water_shallow_given", &vec![0; given * 8]),
+            given: buffer("water_shallow_given", &[0; 8]),
             copies: Copies::default(),
         };
         state.numbers.set_label(Some("water_shallow_numbers"));
         state.edges.set_label(Some("water_shallow_edges"));
         state.pushes.set_label(Some("water_shallow_pushes"));
-        state.set_ground(device, ground);
+        state.set_ground(device, ground, work.has_sources);
         state
     }
 
     /// Replaces bed, walls and sources.
-    pub fn set_ground(&mut self, device: &RenderDevice, ground: &Ground) {
+    pub fn set_ground(&mut self, device: &RenderDevice, ground: &Ground, has_sources: bool) {
         let buffer = |label, contents: &[u8]| {
             device.create_buffer_with_data(&BufferInitDescriptor { label: Some(label), contents, usage: STORAGE })
         };
@@ -86,6 +85,12 @@ impl ShallowState {
             "water_shallow_extras",
             &bytes_of_list(if ground.extras.is_empty() { &none[..] } else { &ground.extras }),
         );
+        let given = 8 * ground.bed.len() as u64;
+        if has_sources && self.given.size() < given {
+            // The first sources there are. Copies have room for what they give from now on.
+            self.given = buffer("water_shallow_given", &vec![0; given as usize]);
+            self.copies = Copies::default();
+        }
         self.ground = ground.version;
     }
 
