@@ -274,11 +274,11 @@ fn what_reading_costs() {
             }
         }
         if block % 8 == 7 {
-            let [unread, read] = spent.each_mut().map(median);
+            let [unread, read] = spent.each_mut().map(|spent| median(spent));
             println!("{:>8} {unread:>12.2?} {read:>12.2?} {:>8.4}", block + 1, read.div_duration_f64(unread));
         }
     }
-    let [unread, read] = spent.each_mut().map(median);
+    let [unread, read] = spent.each_mut().map(|spent| median(spent));
     assert!(state(&app, water).time > 1.0 && read < unread.mul_f32(1.03), "{read:?} of {unread:?}");
 }
 
