@@ -83,7 +83,7 @@ impl ResolvedWater {
 
     /// The simulated water at local `place`, blended into the water outside its area; nothing if it is not simulated or dry.
     ///
-    /// `simulated_at` in `ground.wgsl` is its twin.
+    /// `at` in `water.wgsl` is its twin.
     pub fn simulated_at(&self, place: Vec2) -> Option<FieldSample> {
         let simulated = self.simulated.as_ref()?;
         let share = simulated.area.share(place);

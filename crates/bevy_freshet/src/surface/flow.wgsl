@@ -2,7 +2,6 @@
 #define_import_path freshet::surface::flow
 
 #import freshet::surface::bindings::surface
-#import freshet::surface::ground
 #import freshet::surface::types
 
 // The footprint of a pixel in local xz, taken where control flow is uniform.
@@ -19,11 +18,11 @@ struct Drift {
     current: vec2<f32>,  // of map or simulation, local xz, units: m/s
 }
 
-fn drift(place: vec2<f32>, depth: f32) -> Drift {
+// Patterns at local `place` in this current, local xz, m/s.
+fn drift(place: vec2<f32>, current: vec2<f32>) -> Drift {
     if (surface.flags & (types::FLAG_FLOW | types::FLAG_SIMULATED)) == 0u {
         return Drift(place, place, vec2(1.0, 0.0), vec2(0.0));
     }
-    let current = ground::current(place, depth);
     // The phase differs from place to place, so that the fades do not pulse in step.
     let offset = 0.25 * (sin(place.x * 0.213 + place.y * 0.079) + sin(place.y * 0.187 - place.x * 0.061));
     let phase = fract(vec2(surface.flow_phase + offset) + vec2(0.0, 0.5));

@@ -138,6 +138,7 @@ impl Plugin for SurfacePlugin {
         load_shader_library!(app, "types.wgsl");
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "ground.wgsl");
+        load_shader_library!(app, "water.wgsl");
         load_shader_library!(app, "flow.wgsl");
         load_shader_library!(app, "field.wgsl");
         load_shader_library!(app, "foam.wgsl");

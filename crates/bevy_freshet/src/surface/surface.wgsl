@@ -7,7 +7,6 @@
 #import freshet::surface::flow
 #import freshet::surface::foam
 #import freshet::surface::frozen
-#import freshet::surface::ground
 #import freshet::surface::ice
 #import freshet::surface::light
 #import freshet::surface::mesh
@@ -17,6 +16,7 @@
 #import freshet::surface::scene
 #import freshet::surface::types
 #import freshet::surface::views
+#import freshet::surface::water
 #import freshet::surface::waves
 
 #ifdef TONEMAP_IN_SHADER
@@ -42,12 +42,13 @@ struct Fragment {
 fn vertex(in: Vertex) -> Fragment {
     let rest = clamp(surface.mesh_center + in.position.xz, -surface.half_size, surface.half_size);
     let spacing = mesh::spacing_at(rest - surface.mesh_center);
-    ground::spacing = spacing;
+    water::spacing = spacing;
+    let still = water::at(rest);
     let felt = frozen::felt(rest);
-    let fade = waves::shallow_fade(ground::still_depth(rest)) * felt.open;
+    let fade = waves::shallow_fade(still.depth) * felt.open;
     let moved = waves::displacement(rest, fade, spacing);
     let xz = surface.world_from_local * (rest + moved.xz) + surface.world_origin;
-    let world = vec3(xz.x, surface.level + ground::risen(rest) - ice::drop(felt.thickness) + moved.y, xz.y);
+    let world = vec3(xz.x, surface.level + still.risen - ice::drop(felt.thickness) + moved.y, xz.y);
     return Fragment(view.clip_from_world * vec4(world, 1.0), world, rest, spacing);
 }
 
@@ -71,7 +72,7 @@ fn facet(
     let spacing = max(length(footprint.x), length(footprint.y));
     let swell = waves::slope(rest, waves::shallow_fade(depth) * open, spacing);
     let ripples = detail::slope(drift, footprint);
-    let flowing = ground::simulated_slope(rest);
+    let flowing = water::simulated_slope(rest);
     let slope = surface.world_from_local * (swell.slope + flowing + (ripples.slope + rings) * open);
     return Facet(slope, dpdx(slope), dpdy(slope), swell.variance + ripples.variance * open * open);
 }
@@ -83,21 +84,21 @@ fn normal_of(slope: vec2<f32>) -> vec3<f32> {
 @fragment
 fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(0) vec4<f32> {
     let pixel = in.position.xy;
-    ground::spacing = in.spacing;
-    let still_depth = ground::still_depth(in.rest);
+    water::spacing = in.spacing;
+    let still = water::at(in.rest);
     let fields = field::at(in.rest);
     let footprint = flow::Footprint(dpdx(in.rest), dpdy(in.rest));
     let pixel_size = max(length(footprint.x), length(footprint.y));
-    let drift = flow::drift(in.rest, still_depth);
+    let drift = flow::drift(in.rest, still.current);
     let felt = frozen::felt(in.rest);
-    let facet = facet(in.rest, still_depth, drift, footprint, fields.slope, felt.open);
+    let facet = facet(in.rest, still.depth, drift, footprint, fields.slope, felt.open);
     let sheet = ice::sheet(in.rest, felt, footprint);
     let normal = normal_of(facet.slope);
     let to_eye = scene::direction_to_eye(in.world);
     optics::dye = fields.dye;
     let behind = scene::behind(pixel);
     // Where the bed has no data there is no water.
-    if still_depth < NO_DATA_DEPTH || !ground::is_wet(in.rest) {
+    if still.depth < NO_DATA_DEPTH || !still.is_wet {
         discard;
     }
     if !from_above {
@@ -146,15 +147,15 @@ fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(
         case types::VIEW_NORMAL: { color = normal * 0.5 + 0.5; }
         case types::VIEW_HEIGHT: { color = split(in.world.y - surface.level); }
         case types::VIEW_EDGE: { color = vec3(cover); }
-        case types::VIEW_FLOW: { color = views::flow(in.rest, still_depth, pixel_size); }
-        case types::VIEW_DEPTH: { color = views::depth(still_depth); }
+        case types::VIEW_FLOW: { color = views::flow(in.rest, still.current, pixel_size); }
+        case types::VIEW_DEPTH: { color = views::depth(still.depth); }
         case types::VIEW_WIREFRAME: { color = mix(0.3 * color, vec3(0.0, 1.0, 0.0), views::wire(in.rest, pixel_size)); }
         case types::VIEW_FOAM: { color = vec3(fields.foam); }
         case types::VIEW_INTERACTION: { color = vec3(fields.cover, max(20.0 * vec2(fields.height, -fields.height), vec2(0.0))); }
         case types::VIEW_DYE: { color = exp(-fields.dye); }
-        case types::VIEW_LEVEL: { color = views::scaled(ground::risen(in.rest)); }
-        case types::VIEW_SPEED: { color = views::scaled(views::current_speed(in.rest, still_depth)); }
-        case types::VIEW_FROUDE: { color = views::scaled(views::froude(in.rest, still_depth)); }
+        case types::VIEW_LEVEL: { color = views::scaled(still.risen); }
+        case types::VIEW_SPEED: { color = views::scaled(length(views::velocity(still.current))); }
+        case types::VIEW_FROUDE: { color = views::scaled(views::froude(still.current, still.depth)); }
         case types::VIEW_AGE: { color = views::scaled(surface.simulated_age); }
         case types::VIEW_ICE: { color = vec3(felt.thickness, sheet.cover, sheet.snow); }
         default: {}

@@ -2,9 +2,9 @@
 #define_import_path freshet::surface::views
 
 #import freshet::surface::bindings::surface
-#import freshet::surface::ground
 #import freshet::surface::mesh
 #import freshet::surface::types
+#import freshet::surface::water
 
 // Speed at which the colour of the current is brightest, m/s.
 const FULL_SPEED: f32 = 2.0;
@@ -15,9 +15,9 @@ const GRAVITY: f32 = 9.81;
 // Pixels across the tile of an arrow, at least, where the water is seen most sharply.
 const ARROW_PIXELS: f32 = 24.0;
 
-// The current at local `place`, local xz, m/s.
-fn current(place: vec2<f32>, still_depth: f32) -> vec2<f32> {
-    return surface.current_drift + ground::current(place, still_depth);
+// The velocity of the water where map or simulation say `current`, both local xz, m/s.
+fn velocity(current: vec2<f32>) -> vec2<f32> {
+    return surface.current_drift + current;
 }
 
 // The fully saturated colour at `turn` (0…1) around the wheel: red, yellow, green, cyan, blue, magenta.
@@ -26,24 +26,24 @@ fn hue(turn: f32) -> vec3<f32> {
 }
 
 // Direction as hue, from east (+x) over south (+z); speed as brightness; an arrow in every tile.
-fn flow(place: vec2<f32>, still_depth: f32, pixel_size: f32) -> vec3<f32> {
-    let velocity = current(place, still_depth);
-    let speed = length(velocity);
-    let color = hue(atan2(velocity.y, velocity.x) / 6.2831853) * min(speed / FULL_SPEED, 1.0);
-    return mix(color, vec3(1.0), arrow(place, still_depth, pixel_size));
+fn flow(place: vec2<f32>, current: vec2<f32>, pixel_size: f32) -> vec3<f32> {
+    let towards = velocity(current);
+    let speed = length(towards);
+    let color = hue(atan2(towards.y, towards.x) / 6.2831853) * min(speed / FULL_SPEED, 1.0);
+    return mix(color, vec3(1.0), arrow(place, pixel_size));
 }
 
 // Share of a pixel that the arrow of its tile covers. Tiles measure a power of two, so that they stay where they are while
 // the eye comes closer; arrows are as long as the water flows fast, up to their tile.
-fn arrow(place: vec2<f32>, still_depth: f32, pixel_size: f32) -> f32 {
+fn arrow(place: vec2<f32>, pixel_size: f32) -> f32 {
     let tile = exp2(ceil(log2(max(pixel_size, 1e-4) * ARROW_PIXELS)));
     let center = (floor(place / tile) + 0.5) * tile;
-    let velocity = current(center, still_depth);
-    let speed = length(velocity);
+    let towards = velocity(water::at(center).current);
+    let speed = length(towards);
     if speed < 1e-3 {
         return 0.0;
     }
-    let along = velocity / speed;
+    let along = towards / speed;
     let from_center = (place - center) / tile;
     let p = vec2(dot(from_center, along), along.x * from_center.y - along.y * from_center.x);
     let half_length = mix(0.15, 0.45, min(speed / FULL_SPEED, 1.0));
@@ -64,14 +64,9 @@ fn depth(still_depth: f32) -> vec3<f32> {
     return vec3(0.0, 0.0, 5.0 - step);
 }
 
-// Speed of the current, m/s.
-fn current_speed(place: vec2<f32>, still_depth: f32) -> f32 {
-    return length(current(place, still_depth));
-}
-
-// Speed of the current over that of long waves.
-fn froude(place: vec2<f32>, still_depth: f32) -> f32 {
-    return current_speed(place, still_depth) / sqrt(GRAVITY * max(still_depth, 1e-3));
+// Speed of the water over that of long waves.
+fn froude(current: vec2<f32>, still_depth: f32) -> f32 {
+    return length(velocity(current)) / sqrt(GRAVITY * max(still_depth, 1e-3));
 }
 
 // The colour of a number on the scale of the view.

@@ -1,7 +1,7 @@
 // Stage: a coarser level of the pictures, for those who look from far away. A texel is wet if half of the four that it stands for
 // are, and then it is the mean of the wet ones.
 
-// Depth from which on a cell counts as wet, as in `freshet::surface::ground`, units: m.
+// Depth from which on a cell counts as wet, as in `freshet::surface::water`, units: m.
 const WET: f32 = 1e-3;
 
 @group(0) @binding(0) var finer: texture_2d<f32>;

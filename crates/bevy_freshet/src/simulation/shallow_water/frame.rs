@@ -48,7 +48,7 @@ pub(crate) struct GpuWork {
     pub has_walls: bool,
     /// Whether there are point sources.
     pub has_sources: bool,
-    /// Most steps, an even number.
+    /// Most steps, an even number; 0 if nothing is to be done.
     pub steps: u32,
     /// Where the render world says what it has and hands back what it came to.
     pub held: Arc<Held>,

@@ -11,13 +11,13 @@
 //!
 //! No number of them comes from the CPU during a frame: a step for which no time is left copies the state. What they come
 //! to returns some frames later ([`returned`]), and is all that the CPU knows of the water.
-mod coarsen;
 mod control;
 mod domain;
 mod driver;
 mod frame;
 mod numbers;
 mod on_gpu;
+mod pictures;
 mod plan;
 mod returned;
 mod stages;
@@ -77,18 +77,20 @@ impl Plugin for StagesPlugin {
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         render_app
             .init_resource::<plan::Plans>()
-            .init_resource::<coarsen::Levels>()
             .add_systems(RenderStartup, (stages::create_stages, state::forget_states))
             .add_systems(
                 Render,
                 (
-                    (plan::plan_steps, coarsen::plan_levels).in_set(RenderSystems::PrepareBindGroups),
+                    (plan::plan_steps, pictures::draw_pictures).in_set(RenderSystems::PrepareBindGroups),
                     returned::map_copies.in_set(RenderSystems::Cleanup),
                 ),
             )
             .add_systems(
                 RenderGraph,
-                (plan::run_steps, coarsen::run_levels).chain().in_set(RenderGraphSystems::Render).before(camera_driver),
+                (plan::run_steps, pictures::run_levels)
+                    .chain()
+                    .in_set(RenderGraphSystems::Render)
+                    .before(camera_driver),
             );
     }
 }

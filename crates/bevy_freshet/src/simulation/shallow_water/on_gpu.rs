@@ -147,6 +147,11 @@ impl Simulation {
         }
         let has_ground = gpu.held.ground.load(Ordering::Relaxed) == gpu.ground;
         let version = gpu.ground;
+        // A water that is paused and owes nothing rests, and so does its picture.
+        let rests = added == 0.0 && holds && has_ground && self.is_up_to_date();
+        if rests {
+            self.pace.steps = 0;
+        }
         let ground = (!holds || !has_ground).then(|| {
             Arc::new(Ground {
                 version,
@@ -163,7 +168,7 @@ impl Simulation {
             ground,
             has_walls,
             has_sources,
-            steps: (needed as u32).min(most).next_multiple_of(2),
+            steps: if rests { 0 } else { (needed as u32).min(most).next_multiple_of(2) },
             held: self.on_gpu.as_ref().map(|gpu| gpu.held.clone()).unwrap_or_default(),
         }
     }

@@ -1,7 +1,7 @@
 //! Which stages run in a frame.
 use super::{
-    coarsen::level_of,
     frame::{GpuWork, ShallowFrame, ShallowWork},
+    pictures::level_of,
     returned,
     stages::{COLUMNS, GROUP, ROWS, Stages},
     state::ShallowState,
@@ -12,14 +12,12 @@ use bevy::{
         diagnostic::RecordDiagnostics,
         render_asset::RenderAssets,
         render_resource::{
-            BindGroup, BindGroupEntries, CachedComputePipelineId, ComputePass, ComputePassDescriptor, Extent3d,
-            PipelineCache, TexelCopyBufferLayout,
+            BindGroup, BindGroupEntries, CachedComputePipelineId, ComputePass, ComputePassDescriptor, PipelineCache,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue},
         texture::GpuImage,
     },
 };
-use freshet_hydro::shallow_water::Field;
 
 /// What runs in this frame, for all waters.
 #[derive(Resource, Default)]
@@ -43,7 +41,7 @@ struct Plan {
     texels: UVec2,
 }
 
-/// Plans the steps of every water, and draws the pictures of those that the CPU simulates.
+/// Plans the steps of every water.
 pub(super) fn plan_steps(
     mut commands: Commands,
     mut plans: ResMut<Plans>,
@@ -61,18 +59,16 @@ pub(super) fn plan_steps(
     }
     let is_ready = stages.are_ready(&cache);
     for (entity, frame, state) in &mut waters {
-        let [Some(level), Some(slopes)] = frame.pictures.map(|picture| images.get(picture)) else { continue };
-        let work = match &frame.work {
-            ShallowWork::Gpu(work) if is_ready => work,
-            ShallowWork::Gpu(_) => continue,
-            ShallowWork::Cpu(field) => {
-                if state.is_some() {
-                    commands.entity(entity).remove::<ShallowState>();
-                }
-                draw(field, [level, slopes], &queue);
-                continue;
+        let ShallowWork::Gpu(work) = &frame.work else {
+            if state.is_some() {
+                commands.entity(entity).remove::<ShallowState>();
             }
+            continue;
         };
+        let [Some(level), Some(slopes)] = frame.pictures.map(|picture| images.get(picture)) else { continue };
+        if work.steps == 0 || !is_ready {
+            continue;
+        }
         let newer = |state: &ShallowState| work.start.as_ref().is_some_and(|start| start.version != state.start);
         let mut fresh = None;
         let state = match (state, &work.start, &work.ground) {
@@ -90,24 +86,6 @@ pub(super) fn plan_steps(
             commands.entity(entity).insert(state);
         }
     }
-}
-
-/// Writes what the CPU has come to into the pictures.
-fn draw(field: &Field, [level, slopes]: [&GpuImage; 2], queue: &RenderQueue) {
-    let size = field.size();
-    let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
-    let write = |image: &GpuImage, bytes: &[u8], texel: u32| {
-        let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.x * texel), rows_per_image: None };
-        queue.write_texture(image.texture.as_image_copy(), bytes, layout, extent);
-    };
-    let cells: Vec<u8> = field.cells().iter().flat_map(|cell| cell.to_array()).flat_map(f32::to_le_bytes).collect();
-    write(level, &cells, 16);
-    let half = |(index, slope): (usize, &Vec2)| {
-        let [east, south] = field.walls().get(index).copied().unwrap_or_default().map(f32::from);
-        [slope.x, slope.y, east, south].map(half::f16::from_f32).map(half::f16::to_le_bytes).concat()
-    };
-    let steep: Vec<u8> = field.slopes().iter().enumerate().flat_map(half).collect();
-    write(slopes, &steep, 8);
 }
 
 /// What planning needs to know.
