@@ -1,7 +1,7 @@
 //! Water that is simulated: felt and drawn as it is simulated, on either backend.
 use crate::{
     said::complaints,
-    stage::{Stage, still_water},
+    stage::{SIZE, Stage, still_water},
     waves::{LEVEL, heights},
 };
 use bevy::{ecs::system::RunSystemOnce, prelude::*, time::TimeUpdateStrategy, transform::TransformPlugin};
@@ -339,6 +339,32 @@ fn the_water_does_not_lean_over_a_wall() {
         let lowest = beside(-0.2, -0.06).map(|sample| sample.1).fold(f32::INFINITY, f32::min);
         println!("{backend:?}: at least {lowest} m behind the wall, at most {highest} m before it");
         assert!(lowest > 0.1 && highest < 1e-5);
+    }
+}
+
+/// Cells of the mesh are twice as large as those of the simulation: its last vertex before the bank and its first one on it
+/// are far from the waterline.
+#[test]
+fn a_bank_is_not_climbed_where_the_mesh_is_coarse() {
+    let backends = [SimulationBackend::Cpu, SimulationBackend::Gpu];
+    for (backend, shore) in backends.into_iter().flat_map(|backend| [0.0, 0.4].map(|shore| (backend, shore))) {
+        let mut stage = Stage::new();
+        let (water, waves, surface, optics) = still_water(Vec2::splat(12.0));
+        let surface = WaterSurface { view: SurfaceView::Height, cell: 0.8, cells: 64, mesh_error: 0.0, ..surface };
+        let settings = WaterSimulation { cell_size: 0.4, backend, start: SimulationStart::Still, ..default() };
+        let bed = WaterBed::from_fn(uvec2(60, 60), 0.2, |at| if at.x < shore { -1.0 } else { 2.0 });
+        stage.spawn((bed.unwrap(), Transform::from_xyz(0.0, LEVEL, 0.0)));
+        stage.spawn((water, waves, surface, optics, settings, Transform::from_xyz(0.0, LEVEL, 0.0)));
+        stage.settle();
+        let camera = stage.camera_above(vec3(0.0, LEVEL, 0.0), 6.0);
+        let picture = stage.picture(camera);
+        // The water's pixels of the 0.6 m before the bank.
+        let pixel = 6.0 / SIZE.x as f32;
+        let near =
+            picture.pixels().filter(|(at, _)| (-0.6..-0.02).contains(&((at.x as f32 + 0.5) * pixel - 3.0 - shore)));
+        let off = near.map(|(_, split)| (split.x + split.y / 64.0).abs()).fold(0.0, f32::max);
+        println!("{backend:?}, shore at {shore} m: the water before it is drawn {off} m off");
+        assert!(off < 1e-5);
     }
 }
 

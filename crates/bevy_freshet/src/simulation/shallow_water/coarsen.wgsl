@@ -1,5 +1,5 @@
 // Stage: a coarser level of the pictures, for those who look from far away. A texel is wet if half of the four that it stands for
-// are, and then it is the mean of the wet ones.
+// are, and then it is the mean of the wet ones; else it knows the level of those around it, as in `show.wgsl`.
 
 // Depth from which on a cell counts as wet, as in `freshet::surface::water`, units: m.
 const WET: f32 = 1e-3;
@@ -8,6 +8,23 @@ const WET: f32 = 1e-3;
 @group(0) @binding(1) var finer_slopes: texture_2d<f32>;
 @group(0) @binding(2) var coarser: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(3) var coarser_slopes: texture_storage_2d<rgba16float, write>;
+
+// The mean level of the wet texels in and around a coarser one, as far as it is known, and 1 if it is.
+fn level_around(at: vec2<i32>, last: vec2<i32>) -> vec2<f32> {
+    var level = 0.0;
+    var count = 0.0;
+    for (var k = 0; k < 16; k++) {
+        let cell = textureLoad(finer, clamp(2 * at + vec2(k % 4, k / 4) - 1, vec2(0), last), 0);
+        if cell.y > WET {
+            level += cell.x;
+            count += 1.0;
+        } else {
+            level += cell.z * cell.w;
+            count += cell.w;
+        }
+    }
+    return vec2(level / max(count, 1.0), min(count, 1.0));
+}
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -35,8 +52,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         textureStore(coarser, at, wet / count);
         textureStore(coarser_slopes, at, vec4(slope / count, 0.0, 0.0));
     } else {
-        let mean = dry / (4.0 - count);
-        textureStore(coarser, at, vec4(mean.x, 0.0, 0.0, 0.0));
+        textureStore(coarser, at, vec4(dry.x / (4.0 - count), 0.0, level_around(at, last)));
         textureStore(coarser_slopes, at, vec4(0.0));
     }
 }

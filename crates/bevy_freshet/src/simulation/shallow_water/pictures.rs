@@ -16,7 +16,7 @@ use bevy::{
         texture::GpuImage,
     },
 };
-use freshet_hydro::shallow_water::Field;
+use freshet_hydro::shallow_water::{Field, WET};
 use std::sync::Arc;
 
 /// The coarser levels of a water's pictures.
@@ -116,7 +116,8 @@ fn draw(field: &Field, [level, slopes]: [&GpuImage; 2], queue: &RenderQueue) {
         let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.x * texel), rows_per_image: None };
         queue.write_texture(image.texture.as_image_copy(), bytes, layout, extent);
     };
-    let cells: Vec<u8> = field.cells().iter().flat_map(|cell| cell.to_array()).flat_map(f32::to_le_bytes).collect();
+    let cells = (0..field.cells().len()).map(|index| texel(field, index).to_array());
+    let cells: Vec<u8> = cells.flatten().flat_map(f32::to_le_bytes).collect();
     write(level, &cells, 16);
     let half = |(index, slope): (usize, &Vec2)| {
         let [east, south] = field.walls().get(index).copied().unwrap_or_default().map(f32::from);
@@ -124,6 +125,27 @@ fn draw(field: &Field, [level, slopes]: [&GpuImage; 2], queue: &RenderQueue) {
     };
     let steep: Vec<u8> = field.slopes().iter().enumerate().flat_map(half).collect();
     write(slopes, &steep, 8);
+}
+
+/// A cell in the picture. A dry one has the level of the wet cells around it, and 1 if there are any: `dry` in `show.wgsl`.
+fn texel(field: &Field, index: usize) -> Vec4 {
+    let cell = field.cells()[index];
+    if cell.y > WET {
+        return cell;
+    }
+    let columns = field.size().x as i32;
+    let at = IVec2::new(index as i32 % columns, index as i32 / columns);
+    let mut level = 0.0;
+    let mut count = 0.0_f32;
+    for there in (0..9).map(|k| at + IVec2::new(k % 3, k / 3) - 1) {
+        let is_inside = there.cmpge(IVec2::ZERO).all() && there.cmplt(field.size().as_ivec2()).all();
+        let beside = is_inside.then(|| field.cells()[(there.y * columns + there.x) as usize]);
+        if let Some(beside) = beside.filter(|beside| beside.y > WET) {
+            level += beside.x;
+            count += 1.0;
+        }
+    }
+    Vec4::new(cell.x, cell.y, level / count.max(1.0), count.min(1.0))
 }
 
 /// Makes the levels.

@@ -2,7 +2,7 @@
 #import freshet::simulation::shallow_water::bindings::{numbers, state, bed, extras}
 #import freshet::simulation::shallow_water::cells::primitive
 
-@group(1) @binding(0) var picture: texture_storage_2d<rgba32float, write>;  // level, depth (m), velocity (m/s)
+@group(1) @binding(0) var picture: texture_storage_2d<rgba32float, write>;  // level, depth (m), velocity (m/s); see `dry`
 @group(1) @binding(1) var slopes: texture_storage_2d<rgba16float, write>;   // slope of the level; 1 where a wall stands above it in the east and south
 
 const WET: f32 = 1e-3; // units: m
@@ -39,6 +39,21 @@ fn across(level: f32, cell: vec2<i32>, there: vec2<i32>, to: vec2<i32>) -> f32 {
     return beside(level, there);
 }
 
+// A dry cell: its level and depth, the level of wet cells around it, and 1 if there are any. So the surface goes on under a bank.
+fn dry(at: vec2<i32>, here: vec2<f32>) -> vec4<f32> {
+    var level = 0.0;
+    var count = 0.0;
+    for (var k = 0; k < 9; k++) {
+        let there = at + vec2(k % 3, k / 3) - 1;
+        if all(there >= vec2(0)) && all(there < numbers.size) {
+            let cell = primitive(there.y * numbers.size.x + there.x);
+            level += select(0.0, cell.y, cell.x > WET);
+            count += select(0.0, 1.0, cell.x > WET);
+        }
+    }
+    return vec4(here, level / max(count, 1.0), min(count, 1.0));
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = vec2<i32>(id.xy);
@@ -46,15 +61,18 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let here = primitive(at.y * numbers.size.x + at.x);
-    textureStore(picture, at, vec4(here.y, here.x, here.zw));
+    var shown = vec4(here.y, here.x, here.zw);
     var steep = vec2(0.0);
-    if here.x > WET {
+    if here.x <= WET {
+        shown = dry(at, shown.xy);
+    } else {
         let east = across(here.y, at, at + EAST, EAST);
         let west = across(here.y, at - EAST, at - EAST, EAST);
         let south = across(here.y, at, at + SOUTH, SOUTH);
         let north = across(here.y, at - SOUTH, at - SOUTH, SOUTH);
         steep = vec2(east - west, south - north) / (2.0 * numbers.cell);
     }
+    textureStore(picture, at, shown);
     let walls = select(vec2(0.0), vec2(1.0), vec2(has_wall(at, EAST), has_wall(at, SOUTH)));
     textureStore(slopes, at, vec4(steep, walls));
 }
