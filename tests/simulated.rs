@@ -313,6 +313,24 @@ fn the_height_that_is_drawn_is_the_height_that_is_asked_for_on_both_backends() {
     assert!(off < 0.02, "backends differ by {off} m");
 }
 
+/// Around its middle the mesh is finer than the simulation and further out coarser: vertices that are worked on together look
+/// their heights up in different levels of the picture.
+#[test]
+fn coarser_levels_lie_where_the_finest_does() {
+    for backend in [SimulationBackend::Cpu, SimulationBackend::Gpu] {
+        let (mut stage, camera) = falling(backend, None);
+        let world = stage.app.world_mut();
+        let mut surfaces = world.query::<&mut WaterSurface>();
+        let mut surface = surfaces.single_mut(world).unwrap();
+        (surface.cell, surface.cells) = (0.1, 16);
+        stage.settle();
+        let samples = heights(&mut stage, camera, Vec2::ZERO);
+        let off = samples.iter().map(|(_, drawn, queried)| (drawn - queried).abs()).fold(0.0, f32::max);
+        println!("{backend:?}: drawn {off} m off where the mesh is up to 0.4 m coarse");
+        assert!(off < 0.06, "{backend:?}: {off} m");
+    }
+}
+
 /// Behind a wall the water stands higher than before it, drawn and asked for, as near to it as the mesh can show.
 #[test]
 fn the_water_does_not_lean_over_a_wall() {

@@ -39,19 +39,23 @@ fn at(place: vec2<f32>) -> Water {
     return water;
 }
 
-// The simulated water at local `place` over ground that lies `ground` below the still level, as finely as `spacing` asks for.
+// The simulated water at local `place` over ground that lies `ground` below the still level, as finely as `spacing` asks for:
+// between two levels of the pictures. It goes through all of them, as some renderers take one level for all vertices or pixels
+// that they work on together.
 fn simulated_at(place: vec2<f32>, ground: f32) -> Water {
     let wanted = level_of_detail();
-    let level = floor(wanted);
-    let fine = simulated_in(place, ground, i32(level));
-    let share = wanted - level;
-    if share < 1e-3 {
-        return fine;
+    var water = Water(0.0, 0.0, vec2(0.0), false);
+    for (var level = 0; level < i32(textureNumLevels(simulated)); level++) {
+        let share = 1.0 - abs(wanted - f32(level));
+        if share > 1e-3 {
+            let found = simulated_in(place, ground, level);
+            water.risen += share * found.risen;
+            water.current += share * found.current;
+            water.is_wet = select(water.is_wet, found.is_wet, share >= 0.5);
+        }
     }
-    let coarse = simulated_in(place, ground, i32(level) + 1);
-    let risen = mix(fine.risen, coarse.risen, share);
-    let is_wet = select(fine.is_wet, coarse.is_wet, share > 0.5);
-    return Water(ground + risen, risen, mix(fine.current, coarse.current, share), is_wet);
+    water.depth = ground + water.risen;
+    return water;
 }
 
 // The level of the pictures whose texels are as far apart as the places that are looked up, no coarser than there is.
