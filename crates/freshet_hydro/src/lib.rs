@@ -7,6 +7,7 @@ pub mod fields;
 pub mod fill;
 pub mod flow;
 pub mod grid;
+pub mod hull;
 pub mod ice;
 pub mod noise;
 pub mod optics;
