@@ -1,9 +1,9 @@
 //! What a game says about a floating body, and what it can read back.
 
-use super::hull::Hull;
+use super::body::Body;
 use crate::interaction::DisturbsWater;
 use bevy::prelude::*;
-use freshet_hydro::voxels::Drag;
+use freshet_hydro::hull::HullDrag;
 
 /// A rigid body that floats, sinks, and is carried by the current.
 ///
@@ -14,18 +14,48 @@ use freshet_hydro::voxels::Drag;
 /// the body's meshes, as it is [`DisturbsWater`] as well.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
-#[require(Buoyancy, Hull, DisturbsWater)]
+#[require(Buoyancy, Body, DisturbsWater)]
 pub struct Floating {
     /// How heavy the body is. Default 500 kg/m³.
     pub weight: Weight,
-    /// Cells along each axis of the hull's bounding box, 1…16, default 4. Drafts of a sphere are then right within 1 %
-    /// and the water is looked up at 4 × 4 places; take more for bodies longer than the waves.
-    pub cells_per_axis: u32,
-    /// How soon the body comes to rest, as a share of critical damping, 0…10, default 0.25: after some three swings.
-    /// See [`Drag::damping`].
-    pub damping: f32,
-    /// Drag coefficient C_d of the body against water that passes it, 0…100, default 0.8. See [`Drag::coefficient`].
-    pub drag_coefficient: f32,
+    /// How the water's push is found. Default [`BuoyancyModel::Hull`].
+    pub model: BuoyancyModel,
+    /// Most triangles of the hull, 12…20000, default 400. Round shapes have some 300; finer meshes are simplified, with their volume
+    /// and centre.
+    pub max_triangles: u32,
+    /// Centre of mass in the body's frame, m; that of the homogeneous hull if there is none. Default none. Not for [`Weight::Rapier`],
+    /// which has its own.
+    pub center_of_mass: Option<Vec3>,
+    /// Whether currents and waves carry the body. Default true; without it the water around the body counts as still.
+    pub current: bool,
+    /// Factor on skin friction, 0…100, default 1. See [`HullDrag::friction`].
+    pub friction: f32,
+    /// Pressure coefficient of faces that the water meets squarely, 0…100, default 1.05. See [`HullDrag::bluff`].
+    pub bluff_drag: f32,
+    /// Pressure coefficient of faces that it passes, 0…100, default 0.72. See [`HullDrag::fair`].
+    pub fair_drag: f32,
+    /// How soon the body comes to rest at the surface, by the waves that it sends out, 0…10, default 0.25. See [`HullDrag::radiation`].
+    pub radiation: f32,
+}
+
+/// How the water's push on a [`Floating`] body is found.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Default, Clone, Debug, PartialEq)]
+pub enum BuoyancyModel {
+    /// Pressure integrated over the hull, cut by the surface triangle by triangle: exact.
+    #[default]
+    Hull,
+    /// Cells along each axis of the bounding box, 1…16, as in \[AT15\] but each with the volume of its part of the hull. Drafts of a
+    /// sphere are right within 1 % with 4.
+    Voxels {
+        /// Cells along each axis.
+        per_axis: u32,
+    },
+    /// Points scattered over the hull, each with the same share of its volume, as in \[S22\].
+    Samples {
+        /// Least distance between points, m, > 0.
+        spacing: f32,
+    },
 }
 
 /// The mass of a [`Floating`] body.
@@ -62,12 +92,17 @@ impl Floating {
 
 impl Default for Floating {
     fn default() -> Self {
-        let drag = Drag::default();
+        let drag = HullDrag::default();
         Self {
             weight: Weight::Density(500.0),
-            cells_per_axis: 4,
-            damping: drag.damping,
-            drag_coefficient: drag.coefficient,
+            model: BuoyancyModel::Hull,
+            max_triangles: 400,
+            center_of_mass: None,
+            current: true,
+            friction: drag.friction,
+            bluff_drag: drag.bluff,
+            fair_drag: drag.fair,
+            radiation: drag.radiation,
         }
     }
 }

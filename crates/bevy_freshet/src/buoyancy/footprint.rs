@@ -1,13 +1,20 @@
 //! The water around a body, looked up once a step on a lattice over its footprint.
 
-use super::{floating::Floating, hull::Hull, solid::bounds};
+use super::{
+    body::Body,
+    floating::{BuoyancyModel, Floating},
+    solid::bounds,
+};
 use crate::query::{WaterQuery, WaterSample};
 use bevy::prelude::*;
 use bevy_rapier3d::{
     plugin::context::{RapierContextEntityLink, RapierRigidBodySet},
     prelude::RapierRigidBodyHandle,
 };
-use freshet_hydro::voxels::Surface;
+use freshet_hydro::load::Surface;
+
+/// Places along each side of the lattice under a hull: waves as long as the hull are seen, much shorter ones are not.
+const PLACES: usize = 4;
 
 /// Water on an n × n lattice that spans a rectangle of the xz plane. A body has many more cells than the lattice has
 /// places, and a search for the wave above a place costs more than a cell.
@@ -79,24 +86,31 @@ fn surface(sample: &WaterSample) -> Option<Surface> {
 
 /// Looks up the water around every floating body, asleep or not: that is how sleepers learn that the water moved.
 pub(super) fn sample_water(
-    mut bodies: Query<(&Floating, &RapierRigidBodyHandle, &RapierContextEntityLink, &mut Hull)>,
+    mut bodies: Query<(&Floating, &RapierRigidBodyHandle, &RapierContextEntityLink, &mut Body)>,
     contexts: Query<&RapierRigidBodySet>,
     water: WaterQuery,
 ) {
-    for (floating, handle, link, mut hull) in &mut bodies {
-        let hull = &mut *hull;
+    for (floating, handle, link, mut state) in &mut bodies {
+        let state = &mut *state;
         let Some(body) = contexts.get(link.0).ok().and_then(|set| set.bodies.get(handle.0)) else { continue };
-        if hull.voxels.is_none() || !body.is_dynamic() || !body.is_enabled() {
+        if state.form.is_none() || !body.is_dynamic() || !body.is_enabled() {
             continue;
         }
-        let aabb = bounds(&hull.solids, body.position());
+        let aabb = bounds(&state.solids, body.position());
         // Where waters lie above one another the keel tells which one the body is in.
         let height = aabb.mins.y;
-        hull.footprint.lowest = height;
-        hull.footprint.look_up(
+        state.footprint.lowest = height;
+        state.footprint.look_up(
             Rect::from_corners(aabb.mins.xz(), aabb.maxs.xz()),
-            floating.cells_per_axis.min(16) as usize,
-            |at| water.sample(Vec3::new(at.x, height, at.y)).as_ref().and_then(surface),
+            match floating.model {
+                BuoyancyModel::Voxels { per_axis } => per_axis.min(16) as usize,
+                _ => PLACES,
+            },
+            |at| {
+                let found = water.sample(Vec3::new(at.x, height, at.y)).as_ref().and_then(surface)?;
+                let velocity = if floating.current { found.velocity } else { Vec3::ZERO };
+                Some(Surface { velocity, ..found })
+            },
         );
     }
 }

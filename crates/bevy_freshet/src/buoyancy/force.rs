@@ -1,8 +1,8 @@
 //! The water's forces, lent to the solver for one step.
 
 use super::{
+    body::Body,
     floating::{Buoyancy, Floating},
-    hull::Hull,
 };
 use bevy::prelude::*;
 use bevy_rapier3d::{
@@ -13,7 +13,7 @@ use bevy_rapier3d::{
     prelude::RapierRigidBodyHandle,
     rapier::prelude::RigidBody,
 };
-use freshet_hydro::voxels::{Fluid, Load, Motion, Pose, Wrench};
+use freshet_hydro::load::{Fluid, Inertia, Load, Motion, Pose, Wrench};
 
 /// Speed of a body's fastest point, m/s, above which a body in the water does not go to sleep. Rapier's own threshold of
 /// 0.05 m/s would freeze what drifts in a slow current, or still bobs by a centimetre.
@@ -63,72 +63,82 @@ fn motion(body: &RigidBody) -> Motion {
     Motion { linear: body.linvel(), angular: body.angvel() }
 }
 
-/// Pressure and drag on `hull` where the solver has `body`.
-fn load(hull: &Hull, body: &RigidBody, gravity: Vec3, dt: f32) -> Load {
-    let Some(voxels) = hull.voxels.as_ref().filter(|_| !hull.footprint.is_dry()) else { return Load::default() };
+/// What the water does to a body where the solver has `body`.
+fn load(state: &mut Body, body: &RigidBody, gravity: Vec3) -> Load {
+    let Body { form: Some(form), footprint, drag, submerged, .. } = state else { return Load::default() };
+    let before = submerged.replace(0.0);
+    if footprint.is_dry() {
+        return Load::default();
+    }
     let pose = Pose { position: body.translation(), rotation: *body.rotation() };
     let fluid = Fluid { gravity: (-gravity.y).max(0.0), ..Fluid::default() };
     let centre = body.center_of_mass();
-    voxels.load(&pose, centre, &motion(body), &fluid, &hull.drag, dt, |at| hull.footprint.at(at))
+    let mut load = form.load(&pose, centre, &motion(body), &fluid, drag, |at| footprint.at(at));
+    let share = load.submerged_volume / form.hull.volume();
+    *submerged = Some(share);
+    load.entering = before.filter(|before| share > *before).map_or(0.0, |before| 1.0 - before / share);
+    load
 }
 
 /// The force for the coming step: [`Load::over_step`] with what else acts on `body`.
 fn force(load: &Load, body: &RigidBody, gravity: Vec3, dt: f32) -> Wrench {
     let mass = body.mass_properties();
     let inertia = mass.effective_world_inv_inertia;
-    let inverse_inertia = Mat3::from_cols(
-        Vec3::new(inertia.m11, inertia.m12, inertia.m13),
-        Vec3::new(inertia.m12, inertia.m22, inertia.m23),
-        Vec3::new(inertia.m13, inertia.m23, inertia.m33),
-    );
+    let inertia = Inertia {
+        inverse_mass: mass.effective_inv_mass,
+        inverse_inertia: Mat3::from_cols(
+            Vec3::new(inertia.m11, inertia.m12, inertia.m13),
+            Vec3::new(inertia.m12, inertia.m22, inertia.m23),
+            Vec3::new(inertia.m13, inertia.m23, inertia.m33),
+        ),
+    };
     let others = Wrench {
         force: gravity * (body.gravity_scale() * body.mass()) + body.user_force(),
         torque: body.user_torque(),
     };
-    let wrench = load.over_step(&motion(body), mass.effective_inv_mass, inverse_inertia, others, dt);
+    let wrench = load.over_step(&motion(body), &inertia, others, dt);
     if wrench.is_finite() { wrench } else { Wrench::ZERO }
 }
 
 /// Whether any point of `body` moves faster than [`RESTING_SPEED`].
-fn is_moving(body: &RigidBody, hull: &Hull) -> bool {
-    let length = hull.voxels.as_ref().map_or(0.0, |voxels| voxels.length());
+fn is_moving(body: &RigidBody, length: f32) -> bool {
     body.linvel().length() + body.angvel().length() * length > RESTING_SPEED
 }
 
 /// Computes the forces on all bodies and lends them to the solver; wakes sleepers whose water has changed.
 pub(super) fn lend_forces(
-    mut floating: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Hull, &mut Buoyancy), With<Floating>>,
+    mut floating: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Body, &mut Buoyancy), With<Floating>>,
     mut contexts: Query<(&mut RapierRigidBodySet, &RapierConfiguration)>,
     mode: Res<TimestepMode>,
     time: Res<Time>,
 ) {
     let dt = step_length(&mode, &time);
-    for (handle, link, mut hull, mut buoyancy) in &mut floating {
+    for (handle, link, mut state, mut buoyancy) in &mut floating {
         let Ok((mut set, config)) = contexts.get_mut(link.0) else { continue };
         let Some(body) = set.bodies.get(handle.0) else { continue };
         let steps = config.physics_pipeline_active && dt > 0.0;
-        if !steps || !body.is_dynamic() || !body.is_enabled() || hull.voxels.is_none() || body.mass() <= 0.0 {
+        if !steps || !body.is_dynamic() || !body.is_enabled() || state.form.is_none() || body.mass() <= 0.0 {
             continue;
         }
 
-        let load = load(&hull, body, config.gravity, dt);
+        let load = load(&mut state, body, config.gravity);
         let rest = Rest::of(&load);
-        if body.is_sleeping() && !hull.rest.is_disturbed(&rest, body.mass() * config.gravity.length()) {
+        if body.is_sleeping() && !state.rest.is_disturbed(&rest, body.mass() * config.gravity.length()) {
             continue;
         }
-        hull.rest = rest;
+        state.rest = rest;
         let wrench = force(&load, body, config.gravity, dt);
-        let height = hull.footprint.at(body.center_of_mass().xz()).map(|water| water.height);
+        let height = state.footprint.at(body.center_of_mass().xz()).map(|water| water.height);
         buoyancy.set_if_neq(Buoyancy {
             volume: buoyancy.volume,
             submerged_volume: load.submerged_volume,
-            draft: height.map_or(0.0, |height| (height - hull.footprint.lowest).max(0.0)),
+            draft: height.map_or(0.0, |height| (height - state.footprint.lowest).max(0.0)),
             force: wrench.force,
             torque: wrench.torque,
             water_velocity: load.water_velocity,
         });
 
-        let wake = body.is_sleeping() || (load.submerged_volume > 0.0 && is_moving(body, &hull));
+        let wake = body.is_sleeping() || (load.submerged_volume > 0.0 && is_moving(body, state.length()));
         if !wake && wrench == Wrench::ZERO {
             continue;
         }
@@ -136,7 +146,7 @@ pub(super) fn lend_forces(
         if wake {
             body.wake_up(true);
         }
-        hull.lent = Some(Lent { force: body.user_force(), torque: body.user_torque() });
+        state.lent = Some(Lent { force: body.user_force(), torque: body.user_torque() });
         body.add_force(wrench.force, false);
         body.add_torque(wrench.torque, false);
     }
@@ -144,11 +154,11 @@ pub(super) fn lend_forces(
 
 /// Restores each body's own forces in the solver after the step.
 pub(super) fn take_forces_back(
-    mut floating: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Hull)>,
+    mut floating: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Body)>,
     mut contexts: Query<&mut RapierRigidBodySet>,
 ) {
-    for (handle, link, mut hull) in &mut floating {
-        let Some(lent) = hull.lent.take() else { continue };
+    for (handle, link, mut state) in &mut floating {
+        let Some(lent) = state.lent.take() else { continue };
         let Ok(mut set) = contexts.get_mut(link.0) else { continue };
         let Some(body) = set.bodies.get_mut(handle.0) else { continue };
         body.reset_forces(false);

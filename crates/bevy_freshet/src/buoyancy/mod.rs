@@ -20,14 +20,15 @@
 //!   scales after rotating); moved and scaled parents are right, and the solver's own pose always is.
 //! * The water does not yet feel the bodies.
 
+mod body;
 mod floating;
 mod footprint;
 mod force;
-mod hull;
+mod form;
 mod return_to;
 mod solid;
 
-pub use floating::{Buoyancy, Floating, Weight};
+pub use floating::{Buoyancy, BuoyancyModel, Floating, Weight};
 pub use return_to::ReturnTo;
 
 use crate::{report::Reported, schedule::WaterSystems};
@@ -53,7 +54,7 @@ impl Plugin for BuoyancyPlugin {
             .add_systems(
                 FixedUpdate,
                 (
-                    hull::build_hulls.after(PhysicsSet::SyncBackend).before(WaterSystems::Sample),
+                    body::build_hulls.after(PhysicsSet::SyncBackend).before(WaterSystems::Sample),
                     footprint::sample_water.in_set(WaterSystems::Sample),
                     force::lend_forces.in_set(WaterSystems::Force),
                     (force::take_forces_back, return_to::return_bodies)

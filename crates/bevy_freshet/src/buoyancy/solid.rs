@@ -7,12 +7,15 @@ use bevy::{
 };
 use bevy_rapier3d::parry::{
     bounding_volume::{Aabb, BoundingVolume},
-    mass_properties::details::trimesh_signed_volume_and_center_of_mass,
     math::Pose,
     query::PointQuery,
     shape::{ConvexPolyhedron, SharedShape, TriMesh, TriMeshFlags, TypedShape},
+    transformation::try_convex_hull,
 };
-use freshet_hydro::voxels::{HullError, VoxelHull};
+use freshet_hydro::{
+    hull::{Hull, HullError, Union},
+    voxels::{self, VoxelHull},
+};
 
 /// Part of a body that has an inside, placed in the body's frame.
 #[derive(Clone)]
@@ -22,14 +25,17 @@ pub(super) struct Solid {
 }
 
 /// What is wrong with a shape.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub(super) enum Flaw {
     /// It has no inside; it is left out.
     #[error("has no volume (half-space, height field, polyline, segment or triangle); it does not float")]
     NoVolume,
-    /// It is a triangle mesh with a boundary; its convex hull is used.
-    #[error("is an open triangle mesh; it floats as its convex hull")]
-    Open,
+    /// It is a triangle mesh that does not close; its convex hull is used.
+    #[error("is a triangle mesh of which {0}; it floats as its convex hull")]
+    Open(HullError),
+    /// It overlaps another one, and one of both is not convex.
+    #[error("overlaps another, and not both are convex; what they have in common counts twice ({0} pairs)")]
+    Overlap(usize),
 }
 
 impl Solid {
@@ -74,21 +80,48 @@ impl Solid {
 
     /// A triangle mesh that knows in from out: the mesh itself with outward normals if it is closed, else its hull.
     fn close(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>, report: &mut impl FnMut(Flaw)) -> Option<SharedShape> {
-        let flags = TriMeshFlags::MERGE_DUPLICATE_VERTICES | TriMeshFlags::DELETE_DEGENERATE_TRIANGLES;
-        if triangles.is_empty() || !vertices.iter().all(|v| v.is_finite()) {
-            report(Flaw::NoVolume);
-            return None;
+        match Hull::new(&vertices, &triangles) {
+            Ok(hull) => {
+                let (points, triangles) = (hull.points().to_vec(), hull.triangles().to_vec());
+                TriMesh::with_flags(points, triangles, TriMeshFlags::ORIENTED).ok().map(SharedShape::new)
+            }
+            Err(open @ HullError::Open { .. }) => {
+                report(Flaw::Open(open));
+                SharedShape::convex_hull(&vertices)
+            }
+            Err(_) => {
+                report(Flaw::NoVolume);
+                None
+            }
         }
-        let mut mesh = TriMesh::with_flags(vertices, triangles, flags).ok()?;
-        if !is_closed(mesh.indices()) {
-            report(Flaw::Open);
-            return SharedShape::convex_hull(mesh.vertices());
-        }
-        if trimesh_signed_volume_and_center_of_mass(mesh.vertices(), mesh.indices()).0 < 0.0 {
-            mesh.reverse();
-        }
-        let mesh = TriMesh::with_flags(mesh.vertices().to_vec(), mesh.indices().to_vec(), TriMeshFlags::ORIENTED);
-        mesh.ok().map(SharedShape::new)
+    }
+
+    /// Its surface in the body's frame.
+    fn hull(&self) -> Result<Hull, HullError> {
+        use TypedShape as T;
+        let hull = match self.shape.as_typed_shape() {
+            T::Ball(ball) => Hull::ball(ball.radius),
+            T::Cuboid(cuboid) => Hull::cuboid(cuboid.half_extents),
+            T::Cylinder(cylinder) => Hull::cylinder(cylinder.half_height, cylinder.radius),
+            T::Cone(cone) => Hull::cone(cone.half_height, cone.radius),
+            T::Capsule(capsule) => Hull::capsule(capsule.half_height(), capsule.radius)
+                .and_then(|hull| hull.placed(capsule.rotation_wrt_y(), capsule.center())),
+            T::RoundCuboid(round) => Hull::round_cuboid(round.inner_shape.half_extents, round.border_radius),
+            T::RoundCylinder(round) => {
+                Hull::round_cylinder(round.inner_shape.half_height, round.inner_shape.radius, round.border_radius)
+            }
+            T::RoundCone(round) => {
+                Hull::round_cone(round.inner_shape.half_height, round.inner_shape.radius, round.border_radius)
+            }
+            T::RoundConvexPolyhedron(round) => rounded(&round.inner_shape, round.border_radius),
+            T::ConvexPolyhedron(polyhedron) => {
+                let (points, triangles) = polyhedron.to_trimesh();
+                Hull::new(&points, &triangles)
+            }
+            T::TriMesh(mesh) => Hull::new(mesh.vertices(), mesh.indices()),
+            _ => Err(HullError::NoTriangles),
+        }?;
+        hull.placed(self.pose.rotation, self.pose.translation)
     }
 
     /// Bounding box with the body at `body`.
@@ -134,15 +167,51 @@ fn plane_distance(hull: &ConvexPolyhedron, point: Vec3) -> f32 {
         .fold(f32::NEG_INFINITY, f32::max)
 }
 
-/// Whether every edge has a triangle on either side, running opposite ways.
-fn is_closed(triangles: &[[u32; 3]]) -> bool {
-    let mut balance = HashMap::<(u32, u32), i32>::default();
-    for [a, b, c] in triangles {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            *balance.entry((*from.min(to), *from.max(to))).or_default() += if from < to { 1 } else { -1 };
+/// A convex polyhedron with a border of `radius` around it: the convex hull of balls at its corners, with its true volume
+/// V + A r + M r² + 4/3 π r³ (Steiner), where M is half the sum of the edges' lengths times the angles between their faces' normals.
+fn rounded(inner: &ConvexPolyhedron, radius: f32) -> Result<Hull, HullError> {
+    let ball = Hull::ball(radius)?;
+    let (points, triangles) = inner.to_trimesh();
+    let inner_hull = Hull::new(&points, &triangles)?;
+    let around = |point: &Vec3| ball.points().iter().map(|offset| *point + *offset).collect::<Vec<_>>();
+    let cloud: Vec<Vec3> = inner.points().iter().flat_map(around).collect();
+    let (points, triangles) = try_convex_hull(&cloud).map_err(|_| HullError::Flat)?;
+    let volume = inner_hull.volume()
+        + inner_hull.area() * radius
+        + mean_curvature(&inner_hull) * radius * radius
+        + 4.0 / 3.0 * core::f32::consts::PI * radius.powi(3);
+    Hull::new(&points, &triangles)?.with_volume(volume)
+}
+
+/// Half the sum of the edges' lengths times the angles between the normals of their triangles, m.
+fn mean_curvature(hull: &Hull) -> f32 {
+    let mut normals = HashMap::<(u32, u32), Vec3>::default();
+    let mut sum = 0.0;
+    for triangle in hull.triangles() {
+        let [a, b, c] = triangle.map(|point| hull.points()[point as usize]);
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        for k in 0..3 {
+            let (from, to) = (triangle[k], triangle[(k + 1) % 3]);
+            match normals.remove(&(to, from)) {
+                Some(other) => {
+                    let length = hull.points()[from as usize].distance(hull.points()[to as usize]);
+                    sum += 0.5 * length * normal.angle_between(other);
+                }
+                None => _ = normals.insert((from, to), normal),
+            }
         }
     }
-    !triangles.is_empty() && balance.values().all(|sum| *sum == 0)
+    sum
+}
+
+/// The surface of the union of `solids`.
+pub(super) fn hull_of(solids: &[Solid], report: &mut impl FnMut(Flaw)) -> Result<Hull, HullError> {
+    let parts = solids.iter().map(Solid::hull).collect::<Result<Vec<_>, _>>()?;
+    let Union { hull, counted_twice } = Hull::union(parts)?;
+    if counted_twice > 0 {
+        report(Flaw::Overlap(counted_twice));
+    }
+    Ok(hull)
 }
 
 /// Bounding box of all solids with the body at `body`.
@@ -152,7 +221,7 @@ pub(super) fn bounds(solids: &[Solid], body: &Pose) -> Aabb {
 
 /// Cuts the union of `solids` into voxels. Volumes are exact where Parry knows them; where solids overlap, the share
 /// that counts once is taken from the samples.
-pub(super) fn voxelize(solids: &[Solid], cells_per_axis: u32) -> Result<VoxelHull, HullError> {
+pub(super) fn voxelize(solids: &[Solid], cells_per_axis: u32) -> Result<VoxelHull, voxels::HullError> {
     let bounds = bounds(solids, &Pose::IDENTITY);
     let (mut in_any, mut in_each) = (0_u32, 0_u32);
     let hull = VoxelHull::new([bounds.mins, bounds.maxs], cells_per_axis as usize, |point| {

@@ -1,86 +1,9 @@
 //! Pressure and drag on a hull in a given pose and motion.
 
-use glam::{Mat3, Quat, Vec2, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 
-use super::{Cell, VoxelHull, outer};
-use crate::waves::{GRAVITY, WATER_DENSITY};
-
-/// Where a body is: world from body.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Pose {
-    /// Position of the body frame's origin in the world, in m.
-    pub position: Vec3,
-    /// Rotation from the body's frame to the world's, of unit length.
-    pub rotation: Quat,
-}
-
-/// How a body moves.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Motion {
-    /// Velocity of the centre of mass in the world, in m/s.
-    pub linear: Vec3,
-    /// Angular velocity in the world, in rad/s.
-    pub angular: Vec3,
-}
-
-/// The water surface above or below a point.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Surface {
-    /// Height η of the surface, in m.
-    pub height: f32,
-    /// Slope (∂η/∂x, ∂η/∂z) of the surface, without unit.
-    pub slope: Vec2,
-    /// Velocity of the water, current and waves together, in m/s.
-    pub velocity: Vec3,
-}
-
-/// A force and a torque about the centre of mass, in the world.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Wrench {
-    /// Force, in N.
-    pub force: Vec3,
-    /// Torque about the centre of mass, in N·m.
-    pub torque: Vec3,
-}
-
-impl Wrench {
-    /// Neither force nor torque.
-    pub const ZERO: Self = Self { force: Vec3::ZERO, torque: Vec3::ZERO };
-
-    /// Adds `force` (N) acting at `arm` (m) from the centre of mass.
-    pub fn add_at(&mut self, force: Vec3, arm: Vec3) {
-        self.force += force;
-        self.torque += arm.cross(force);
-    }
-
-    /// Whether no component is infinite or not a number.
-    pub fn is_finite(&self) -> bool {
-        self.force.is_finite() && self.torque.is_finite()
-    }
-}
-
-impl std::ops::Add for Wrench {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self { force: self.force + other.force, torque: self.torque + other.torque }
-    }
-}
-
-/// The liquid and the gravity that acts on it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fluid {
-    /// Density ρ, in kg/m³, positive. Default [`WATER_DENSITY`]; sea water has 1025.
-    pub density: f32,
-    /// Gravity g, in m/s², not negative. Default [`GRAVITY`].
-    pub gravity: f32,
-}
-
-impl Default for Fluid {
-    fn default() -> Self {
-        Self { density: WATER_DENSITY, gravity: GRAVITY }
-    }
-}
+use super::{Cell, VoxelHull};
+use crate::load::{Fluid, Load, Motion, Pose, Surface};
 
 /// How strongly water resists the motion of a body through it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,65 +21,6 @@ impl Default for Drag {
     fn default() -> Self {
         Self { damping: 0.25, coefficient: 0.8 }
     }
-}
-
-/// What the water does to a hull: constant forces, and resistance that is linear in the body's motion.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Load {
-    /// Pressure of the water at rest around the body: Archimedes' push and its lever.
-    pub pressure: Wrench,
-    /// Force of the moving water on a body held still.
-    pub stream: Wrench,
-    /// Resistance to the body's own motion.
-    pub resistance: Resistance,
-    /// Volume under water, in m³.
-    pub submerged_volume: f32,
-    /// Area in which the surface cuts the body, in m².
-    pub waterplane_area: f32,
-    /// Mean velocity of the water around the submerged part, in m/s.
-    pub water_velocity: Vec3,
-}
-
-/// The symmetric, positive 6 × 6 matrix that turns a motion into the force and torque that resist it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Resistance {
-    /// Force per velocity, in N·s/m.
-    pub linear: Mat3,
-    /// Torque per velocity, in N·s; its transpose is force per angular velocity.
-    pub coupling: Mat3,
-    /// Torque per angular velocity, in N·m·s.
-    pub angular: Mat3,
-}
-
-impl Default for Resistance {
-    /// None. (The default of a matrix is the identity.)
-    fn default() -> Self {
-        Self { linear: Mat3::ZERO, coupling: Mat3::ZERO, angular: Mat3::ZERO }
-    }
-}
-
-impl Resistance {
-    /// Adds a point at `arm` from the centre of mass that resists with `b` times its velocity v + ω × r:
-    /// force −B(v + ω × r), torque r × force.
-    fn add_at(&mut self, b: Mat3, arm: Vec3) {
-        let cross = cross_matrix(arm);
-        self.linear += b;
-        self.coupling += cross * b;
-        self.angular += cross * b * cross.transpose();
-    }
-
-    /// The force and torque by which the water resists `motion`.
-    pub fn apply(&self, motion: &Motion) -> Wrench {
-        Wrench {
-            force: -(self.linear * motion.linear + self.coupling.transpose() * motion.angular),
-            torque: -(self.coupling * motion.linear + self.angular * motion.angular),
-        }
-    }
-}
-
-/// The matrix \[r\] with \[r\] v = r × v.
-fn cross_matrix(r: Vec3) -> Mat3 {
-    Mat3::from_cols(Vec3::new(0.0, r.z, -r.y), Vec3::new(-r.z, 0.0, r.x), Vec3::new(r.y, -r.x, 0.0))
 }
 
 /// The submerged part of a cell, seen from the world.
@@ -190,9 +54,7 @@ impl Wetted {
 impl VoxelHull {
     /// Pressure and drag on the hull at `pose` with `motion`, about the centre of mass `centre` (world, m).
     ///
-    /// `surface` gives the water at a world (x, z), or `None` where there is none. `dt`, in s, is the length of the
-    /// step for which [`Load::over_step`] will be asked; it makes the pressure that of the step's end, as far as the
-    /// body's own motion changes it, which keeps bodies steady that bob faster than the steps follow.
+    /// `surface` gives the water at a world (x, z), or `None` where there is none.
     ///
     /// A submerged part V is pressed by ρ g V (−∂η/∂x, 1, −∂η/∂z), the pressure gradient under a slope; the water
     /// moves with one velocity from surface to bed.
@@ -203,7 +65,6 @@ impl VoxelHull {
         motion: &Motion,
         fluid: &Fluid,
         drag: &Drag,
-        dt: f32,
         mut surface: impl FnMut(Vec2) -> Option<Surface>,
     ) -> Load {
         let world_from_body = Mat3::from_quat(pose.rotation);
@@ -220,7 +81,7 @@ impl VoxelHull {
             let covariance = world_from_body * cell.covariance * world_from_body.transpose();
             let wetted = Wetted::new(water.height - centre.y - arm.y, &covariance);
             if wetted.share > 0.0 {
-                load.add_cell(cell, &wetted, arm, &water, motion, fluid, &drag, dt);
+                add_cell(&mut load, cell, &wetted, arm, &water, motion, fluid, &drag);
             }
         }
         if load.submerged_volume > 0.0 {
@@ -230,37 +91,35 @@ impl VoxelHull {
     }
 }
 
-impl Load {
-    fn add_cell(
-        &mut self,
-        cell: &Cell,
-        wetted: &Wetted,
-        arm: Vec3,
-        water: &Surface,
-        motion: &Motion,
-        fluid: &Fluid,
-        drag: &CellDrag,
-        dt: f32,
-    ) {
-        let volume = cell.volume * wetted.share;
-        let area = cell.volume * wetted.waterplane;
-        let weight = fluid.density * fluid.gravity;
-        let arm = arm + wetted.shift;
+/// Adds the submerged part of a cell.
+fn add_cell(
+    load: &mut Load,
+    cell: &Cell,
+    wetted: &Wetted,
+    arm: Vec3,
+    water: &Surface,
+    motion: &Motion,
+    fluid: &Fluid,
+    drag: &CellDrag,
+) {
+    let volume = cell.volume * wetted.share;
+    let area = cell.volume * wetted.waterplane;
+    let weight = fluid.density * fluid.gravity;
+    let arm = arm + wetted.shift;
 
-        let up_slope = Vec3::new(-water.slope.x, 1.0, -water.slope.y);
-        self.pressure.add_at(up_slope * (weight * volume), arm);
+    let up_slope = Vec3::new(-water.slope.x, 1.0, -water.slope.y);
+    load.pressure.add_at(up_slope * (weight * volume), arm);
+    // Rising by y loses ρ g A y of push.
+    load.stiffness.add_along(weight * area, Vec3::Y, arm);
 
-        let relative = water.velocity - motion.linear - motion.angular.cross(arm);
-        // Rising by v·dt in the step loses ρ g A v dt of push.
-        let heave = outer(Vec3::Y) * (weight * area * dt);
-        let resistance = drag.at(volume, relative.length()) + heave;
-        self.resistance.add_at(resistance, arm);
-        self.stream.add_at(resistance * water.velocity, arm);
+    let relative = water.velocity - motion.linear - motion.angular.cross(arm);
+    let resistance = drag.at(volume, relative.length());
+    load.resistance.add_at(resistance, arm);
+    load.stream.add_at(resistance * water.velocity, arm);
 
-        self.submerged_volume += volume;
-        self.waterplane_area += area;
-        self.water_velocity += water.velocity * volume;
-    }
+    load.submerged_volume += volume;
+    load.waterplane_area += area;
+    load.water_velocity += water.velocity * volume;
 }
 
 /// The parts of the drag that all cells of a body share.

@@ -8,8 +8,7 @@
 //!
 //! * [`VoxelHull`] holds the cells of a shape, its volume, and from the same cells its centre and inertia, so that
 //!   weight and buoyancy agree with each other;
-//! * [`VoxelHull::load`] gives pressure and drag in a given pose and motion as a [`Load`];
-//! * [`Load::over_step`] turns them into the constant force and torque of a time step that can never overshoot.
+//! * [`VoxelHull::load`] gives pressure and drag in a given pose and motion as a [`Load`](crate::load::Load).
 //!
 //! # Symbols
 //!
@@ -17,9 +16,8 @@
 //! column (m), η height of the water surface (m), ρ density of the water (kg/m³), g gravity (m/s²), ŷ up.
 
 mod load;
-mod step;
 
-pub use load::{Drag, Fluid, Load, Motion, Pose, Surface, Wrench};
+pub use load::Drag;
 
 use glam::{Mat3, USizeVec3, Vec3};
 use thiserror::Error;

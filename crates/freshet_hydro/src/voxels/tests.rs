@@ -7,6 +7,7 @@ use glam::{EulerRot, Mat3, Quat, Vec2, Vec3};
 use proptest::prelude::*;
 
 use super::*;
+use crate::load::{Fluid, Inertia, Load, Motion, Pose, Surface, Wrench};
 use crate::waves::{GRAVITY, WATER_DENSITY};
 
 /// Weight of a cubic metre of water, N.
@@ -36,7 +37,7 @@ fn still_load(hull: &VoxelHull, height: f32, rotation: Quat) -> Load {
     let centre = position + rotation * hull.centroid();
     let motion = Motion::default();
     let (fluid, drag) = (Fluid::default(), Drag::default());
-    hull.load(&pose, centre, &motion, &fluid, &drag, 0.0, |_| Some(STILL))
+    hull.load(&pose, centre, &motion, &fluid, &drag, |_| Some(STILL))
 }
 
 /// Height of the body's origin at which the water carries a body of relative density `s`, by bisection.
@@ -134,7 +135,7 @@ fn a_slope_pushes_downhill() {
     let slope = Vec2::new(0.1, -0.2);
     let water = |at: Vec2| Some(Surface { height: 10.0 + slope.dot(at), slope, velocity: Vec3::ZERO });
     let (motion, fluid, drag) = (Motion::default(), Fluid::default(), Drag::default());
-    let load = hull.load(&Pose::default(), Vec3::ZERO, &motion, &fluid, &drag, 0.0, water);
+    let load = hull.load(&Pose::default(), Vec3::ZERO, &motion, &fluid, &drag, water);
     assert!(load.pressure.force.abs_diff_eq(WEIGHT * Vec3::new(-0.1, 1.0, 0.2), 1e-4 * WEIGHT));
 }
 
@@ -172,8 +173,13 @@ fn drift(hull: &VoxelHull, s: f32, dt: f32, seconds: f32) -> Vec<f32> {
     (0..(seconds / dt) as usize)
         .map(|_| {
             let pose = Pose { position, rotation: Quat::IDENTITY };
-            let load = hull.load(&pose, position, &motion, &fluid, &drag, dt, |_| Some(stream));
-            let wrench = load.over_step(&motion, Vec3::splat(mass.recip()), inverse_inertia, weight, dt);
+            let load = hull.load(&pose, position, &motion, &fluid, &drag, |_| Some(stream));
+            let wrench = load.over_step(
+                &motion,
+                &Inertia { inverse_mass: Vec3::splat(mass.recip()), inverse_inertia },
+                weight,
+                dt,
+            );
             motion.linear += (wrench.force + weight.force) * (dt / mass);
             position += motion.linear * dt;
             motion.linear.x
@@ -200,7 +206,12 @@ fn a_body_in_balance_stays_so() {
     let load = still_load(&hull, 0.0, Quat::IDENTITY);
     let weight = Wrench { force: -load.pressure.force, torque: Vec3::ZERO };
     for dt in [1e-3, 0.02, 0.5] {
-        let wrench = load.over_step(&Motion::default(), Vec3::splat(2e-3), Mat3::IDENTITY * 0.01, weight, dt);
+        let wrench = load.over_step(
+            &Motion::default(),
+            &Inertia { inverse_mass: Vec3::splat(2e-3), inverse_inertia: Mat3::IDENTITY * 0.01 },
+            weight,
+            dt,
+        );
         assert!(wrench.force.abs_diff_eq(load.pressure.force, 1e-5 * load.pressure.force.y));
     }
 }
@@ -235,8 +246,8 @@ proptest! {
         let before = Motion { linear: linear.into(), angular: angular.into() };
         let fluid = Fluid { gravity: 0.0, ..Fluid::default() };
         let pose = Pose { position: Vec3::NEG_Y * 10.0, rotation: Quat::IDENTITY };
-        let load = hull.load(&pose, pose.position, &before, &fluid, &Drag::default(), dt, |_| Some(STILL));
-        let wrench = load.over_step(&before, Vec3::splat(mass.recip()), inertia.inverse(), Wrench::ZERO, dt);
+        let load = hull.load(&pose, pose.position, &before, &fluid, &Drag::default(), |_| Some(STILL));
+        let wrench = load.over_step(&before, &Inertia { inverse_mass: Vec3::splat(mass.recip()), inverse_inertia: inertia.inverse() }, Wrench::ZERO, dt);
         let energy = |m: &Motion| mass * m.linear.length_squared() + m.angular.dot(inertia * m.angular);
         let after = Motion {
             linear: before.linear + wrench.force * (dt / mass),

@@ -1,10 +1,11 @@
-//! The hull of a floating body: built from its colliders or its mesh, and the mass that follows from it.
+//! A floating body: its hull, built from its colliders or its mesh, and the mass that follows from it.
 
 use super::{
     floating::{Buoyancy, Floating, Weight},
     footprint::Footprint,
     force::{Lent, Rest},
-    solid::{Flaw, Solid, voxelize},
+    form::Form,
+    solid::{Flaw, Solid},
 };
 use crate::report::Reported;
 use bevy::{asset::AssetId, prelude::*};
@@ -14,22 +15,24 @@ use bevy_rapier3d::{
     prelude::{MassModifiedEvent, RapierRigidBodyHandle},
     rapier::prelude::{ColliderSet, RigidBody},
 };
-use freshet_hydro::voxels::{Drag, VoxelHull};
+use freshet_hydro::hull::HullDrag;
 use std::sync::Arc;
 
 /// State of a floating body between systems.
 #[derive(Component, Default)]
-pub(crate) struct Hull {
+pub(crate) struct Body {
     /// What the hull was built from.
     source: Source,
     /// Solids of the body, for its bounding box.
     pub(super) solids: Vec<Solid>,
-    /// Cells; none until built, or if the body has no volume.
-    pub(super) voxels: Option<VoxelHull>,
-    /// Mass that `Weight` asks for, kg; none if Rapier's own counts.
-    mass: Option<f32>,
+    /// The hull; none until built, or if the body has no volume.
+    pub(super) form: Option<Form>,
+    /// Mass that `Weight` asks for; none if Rapier's own counts.
+    mass: Option<MassProperties>,
     /// Checked settings.
-    pub(super) drag: Drag,
+    pub(super) drag: HullDrag,
+    /// Share of the hull that was under water in the step before; none before the first.
+    pub(super) submerged: Option<f32>,
     /// Water around the body, looked up in this step.
     pub(super) footprint: Footprint,
     /// What the solver has to give back after the step.
@@ -99,56 +102,67 @@ impl Source {
     }
 }
 
-impl Hull {
-    /// Cuts the solids into voxels; without any there is no hull, and the body falls through the water.
-    fn build(&mut self, solids: Vec<Solid>, cells_per_axis: u32) -> Result<(), String> {
-        self.voxels = None;
+impl Body {
+    /// Makes the hull of the solids; without any there is none, and the body falls through the water.
+    fn build(&mut self, solids: Vec<Solid>, floating: &Floating, report: &mut impl FnMut(Flaw)) -> Result<(), String> {
+        self.form = None;
+        self.submerged = None;
         self.solids = solids;
         if self.solids.is_empty() {
             return Err("has neither a collider nor a mesh with a volume; the body does not float".into());
         }
-        let hull =
-            voxelize(&self.solids, cells_per_axis).map_err(|error| format!("{error}; the body does not float"))?;
-        self.voxels = Some(hull);
+        let form = Form::new(&self.solids, floating, report);
+        self.form = Some(form.map_err(|problem| format!("{problem}; the body does not float"))?);
         Ok(())
     }
 
-    /// Mass (kg) that the settings ask for, if they do.
-    fn resolve_mass(&self, entity: Entity, weight: Weight, reported: &mut Reported) -> Option<f32> {
-        let volume = self.voxels.as_ref()?.volume();
-        match weight {
+    /// The mass that the settings ask for, if they do: that of a homogeneous hull, with its centre moved if they say so.
+    fn resolve_mass(&self, entity: Entity, floating: &Floating, reported: &mut Reported) -> Option<MassProperties> {
+        let hull = &self.form.as_ref()?.hull;
+        let volume = hull.volume();
+        let mass = match floating.weight {
             Weight::Density(density) => {
-                Some(volume * reported.clamp(entity, "Floating::weight (density)", density, 1.0..=3e4, 500.0))
+                volume * reported.clamp(entity, "Floating::weight (density)", density, 1.0..=3e4, 500.0)
             }
-            Weight::Mass(mass) => {
-                let fallback = 500.0 * volume;
-                Some(reported.clamp(entity, "Floating::weight (mass)", mass, 1e-6..=1e12, fallback))
-            }
-            Weight::Rapier => None,
-        }
+            Weight::Mass(mass) => reported.clamp(entity, "Floating::weight (mass)", mass, 1e-6..=1e12, 500.0 * volume),
+            Weight::Rapier => return None,
+        };
+        let center = floating.center_of_mass.unwrap_or(hull.centroid());
+        let center = if center.is_finite() {
+            center
+        } else {
+            reported.warn(entity, "Floating::center_of_mass", "is not finite; the hull's own counts");
+            hull.centroid()
+        };
+        Some(MassProperties::with_inertia_matrix(center, mass, hull.unit_inertia() * mass))
     }
 
-    /// Gives `body` the mass, centre and inertia of a homogeneous hull, in place of its colliders'.
-    fn apply_mass(&self, mass: f32, body: &mut RigidBody, colliders: &mut ColliderSet) {
-        let Some(hull) = &self.voxels else { return };
+    /// The edge of a cube of the hull's volume, m.
+    pub(super) fn length(&self) -> f32 {
+        self.form.as_ref().map_or(0.0, |form| form.hull.length())
+    }
+
+    /// Gives `body` this mass in place of its colliders'.
+    fn apply_mass(properties: MassProperties, body: &mut RigidBody, colliders: &mut ColliderSet) {
         for handle in body.colliders() {
             if let Some(collider) = colliders.get_mut(*handle) {
                 collider.set_density(0.0);
             }
         }
-        let properties = MassProperties::with_inertia_matrix(hull.centroid(), mass, hull.unit_inertia() * mass);
         body.set_additional_mass_properties(properties, true);
         body.recompute_mass_properties_from_colliders(colliders);
     }
 }
 
 /// Checked drag settings.
-fn resolve_drag(entity: Entity, floating: &Floating, reported: &mut Reported) -> Drag {
-    let usual = Drag::default();
-    let drag = floating.drag_coefficient;
-    Drag {
-        damping: reported.clamp(entity, "Floating::damping", floating.damping, 0.0..=10.0, usual.damping),
-        coefficient: reported.clamp(entity, "Floating::drag_coefficient", drag, 0.0..=100.0, usual.coefficient),
+fn resolve_drag(entity: Entity, floating: &Floating, reported: &mut Reported) -> HullDrag {
+    let usual = HullDrag::default();
+    let mut clamp = |field, value, most, usual| reported.clamp(entity, field, value, 0.0..=most, usual);
+    HullDrag {
+        friction: clamp("Floating::friction", floating.friction, 100.0, usual.friction),
+        bluff: clamp("Floating::bluff_drag", floating.bluff_drag, 100.0, usual.bluff),
+        fair: clamp("Floating::fair_drag", floating.fair_drag, 100.0, usual.fair),
+        radiation: clamp("Floating::radiation", floating.radiation, 10.0, usual.radiation),
     }
 }
 
@@ -161,7 +175,7 @@ pub(super) fn build_hulls(
         &RapierContextEntityLink,
         Option<&Mesh3d>,
         &GlobalTransform,
-        &mut Hull,
+        &mut Body,
         &mut Buoyancy,
     )>,
     mut contexts: Query<(&mut RapierRigidBodySet, &mut RapierContextColliders)>,
@@ -174,35 +188,40 @@ pub(super) fn build_hulls(
         .read()
         .filter_map(|event| if let AssetEvent::Modified { id } = event { Some(*id) } else { None })
         .collect();
-    for (entity, floating, handle, link, mesh, transform, mut hull, mut buoyancy) in &mut bodies {
+    for (entity, floating, handle, link, mesh, transform, mut state, mut buoyancy) in &mut bodies {
         let Ok((mut set, mut colliders)) = contexts.get_mut(link.0) else { continue };
         let Some(body) = set.bodies.get(handle.0).filter(|body| body.is_dynamic()) else { continue };
 
-        if matches!(hull.source, Source::Mesh(id, _) if modified.contains(&id)) {
-            hull.source = Source::None;
+        if matches!(state.source, Source::Mesh(id, _) if modified.contains(&id)) {
+            state.source = Source::None;
         }
         let source = Source::of(body, &colliders.colliders, mesh, transform.scale());
-        if source != hull.source || floating.is_changed() {
+        if source != state.source || floating.is_changed() {
             let mut report = |flaw: Flaw| reported.warn(entity, "Floating: a shape", flaw);
             let Some(solids) = source.solids(meshes.as_deref(), &mut report) else {
                 // The mesh still loads. An empty source asks again in the next step.
-                hull.source = Source::None;
+                state.source = Source::None;
                 continue;
             };
-            hull.source = source;
-            if let Err(problem) = hull.build(solids, floating.cells_per_axis) {
+            state.source = source;
+            if let Err(problem) = state.build(solids, &floating, &mut report) {
                 reported.warn(entity, "Floating", problem);
             }
-            hull.drag = resolve_drag(entity, &floating, &mut reported);
-            hull.mass = hull.resolve_mass(entity, floating.weight, &mut reported);
-            buoyancy.volume = hull.voxels.as_ref().map_or(0.0, VoxelHull::volume);
+            state.drag = resolve_drag(entity, &floating, &mut reported);
+            state.mass = state.resolve_mass(entity, &floating, &mut reported);
+            buoyancy.volume = state.form.as_ref().map_or(0.0, |form| form.hull.volume());
         }
 
         // Also when a game has since given the body another mass: `Weight` decides.
-        if let Some(mass) = hull.mass.filter(|mass| (body.mass() - mass).abs() > 1e-4 * mass)
+        let differs = |wanted: &MassProperties| {
+            let mass = wanted.mass();
+            let off_center = body.local_center_of_mass().distance(wanted.local_com);
+            (body.mass() - mass).abs() > 1e-4 * mass || off_center > 1e-3 * state.length()
+        };
+        if let Some(mass) = state.mass.filter(differs)
             && let Some(body) = set.bodies.get_mut(handle.0)
         {
-            hull.apply_mass(mass, body, &mut colliders.colliders);
+            Body::apply_mass(mass, body, &mut colliders.colliders);
             mass_modified.write(entity.into());
         }
     }

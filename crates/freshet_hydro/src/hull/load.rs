@@ -1,0 +1,174 @@
+//! What the water does to a hull in a given pose and motion.
+//!
+//! The depth of the points below the surface is taken as linear along every edge. A triangle is cut where the depth is 0, and over
+//! what is under water the pressure p = ρ g d is integrated exactly: with corners p_i at depths d_i, S = d₁ + d₂ + d₃ and area vector
+//! **A**,
+//!
+//! **F** = −ρ g (S/3) **A**, at Σ p_i (d_i + S)/(4 S).
+//!
+//! Over a closed surface these forces add up to ρ g V ŷ through the centroid of the displaced water; under a sloping surface also to the
+//! push down the slope.
+use super::{
+    Hull, HullDrag,
+    faces::{Faces, Sums},
+    resistance::FaceDrag,
+};
+use crate::load::{Fluid, Load, Motion, Pose, Surface};
+use glam::{Mat3, Vec2, Vec3};
+use pulp::{Arch, Simd, WithSimd};
+
+/// What is known of a point of a hull in a step.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct HullPoint {
+    /// From the centre of mass, in the world, m.
+    pub(super) arm: Vec3,
+    /// Below the surface, m.
+    pub(super) depth: f32,
+    /// Velocity of the water there, m/s.
+    pub(super) velocity: Vec3,
+}
+
+impl Hull {
+    /// What the water does to the hull at `pose` with `motion`, about the centre of mass `centre` (world, m).
+    ///
+    /// `surface` gives the water at a world (x, z), or `None` where there is none. `points` is room that is used from step to step, so
+    /// that none is allocated.
+    pub fn load(
+        &self,
+        pose: &Pose,
+        centre: Vec3,
+        motion: &Motion,
+        fluid: &Fluid,
+        drag: &HullDrag,
+        points: &mut Vec<HullPoint>,
+        surface: impl FnMut(Vec2) -> Option<Surface>,
+    ) -> Load {
+        let Some(around) = self.look_up(pose, centre, points, surface) else { return Load::default() };
+        let speed = (around.velocity - motion.linear).length();
+        let weight = fluid.density * fluid.gravity;
+        let drag = FaceDrag::new(drag, fluid.density, fluid.gravity, self.length(), speed);
+        let sums = Arch::new().dispatch(Wetted { hull: self, points, faces: Faces::new(*motion, weight, drag) });
+        self.finish(&sums, pose, fluid, &around)
+    }
+
+    /// Looks up the water at all points; nothing if there is none.
+    fn look_up(
+        &self,
+        pose: &Pose,
+        centre: Vec3,
+        points: &mut Vec<HullPoint>,
+        mut surface: impl FnMut(Vec2) -> Option<Surface>,
+    ) -> Option<Around> {
+        let world_from_body = Mat3::from_quat(pose.rotation);
+        // Relative to the centre of mass, so that a body a kilometre from the origin floats as precisely.
+        let origin = pose.position - centre;
+        let mut around = Around::default();
+        let mut count = 0.0;
+        let mut deepest = 0.0_f32;
+        points.clear();
+        points.extend(self.points.iter().map(|point| {
+            let arm = origin + world_from_body * *point;
+            let Some(water) = surface(Vec2::new(centre.x + arm.x, centre.z + arm.z)) else {
+                return HullPoint { arm, depth: -self.length(), velocity: Vec3::ZERO };
+            };
+            let height = water.height - centre.y;
+            count += 1.0;
+            around.height += height;
+            around.velocity += water.velocity;
+            deepest = deepest.max(height - arm.y);
+            HullPoint { arm, depth: height - arm.y, velocity: water.velocity }
+        }));
+        (deepest > 0.0).then(|| Around { height: around.height / count, velocity: around.velocity / count })
+    }
+
+    fn finish(&self, sums: &Sums, pose: &Pose, fluid: &Fluid, around: &Around) -> Load {
+        let weight = fluid.density * fluid.gravity;
+        let mut load = sums.load(weight);
+        load.submerged_volume = load.submerged_volume.min(self.volume);
+        if load.submerged_volume <= 1e-9 * self.volume {
+            return Load::default();
+        }
+        // The water that moves with the hull is around its submerged part.
+        let push = load.pressure;
+        let buoyancy = Vec3::new(
+            push.torque.z / push.force.y,
+            around.height - sums.depths() / load.submerged_volume,
+            -push.torque.x / push.force.y,
+        );
+        let share = load.submerged_volume / self.volume * fluid.density;
+        let world_from_body = Mat3::from_quat(pose.rotation);
+        let turned = |matrix: Mat3| world_from_body * matrix * world_from_body.transpose() * share;
+        load.added_mass.add_at(turned(self.added_mass.linear), buoyancy);
+        load.added_mass.angular += turned(self.added_mass.angular);
+        load
+    }
+}
+
+/// The water around a hull.
+#[derive(Default)]
+struct Around {
+    /// Mean height over the centre of mass, m.
+    height: f32,
+    /// Mean velocity, m/s.
+    velocity: Vec3,
+}
+
+/// The triangles of a hull, cut by the surface; compiled once for every set of vector instructions.
+struct Wetted<'a> {
+    hull: &'a Hull,
+    points: &'a [HullPoint],
+    faces: Faces,
+}
+
+impl WithSimd for Wetted<'_> {
+    type Output = Sums;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, _: S) -> Sums {
+        let (own, shared) = self.hull.triangles.split_at(self.hull.shared);
+        for (triangles, sign) in [(own, 1.0), (shared, -1.0)] {
+            for triangle in triangles {
+                self.add(triangle.map(|index| &self.points[index as usize]), sign);
+            }
+        }
+        self.faces.finish()
+    }
+}
+
+impl Wetted<'_> {
+    /// Adds what is under water of a triangle.
+    #[inline(always)]
+    fn add(&mut self, [a, b, c]: [&HullPoint; 3], sign: f32) {
+        let wet = [a, b, c].map(|corner| corner.depth > 0.0);
+        match wet {
+            [false, false, false] => {}
+            [true, true, true] => self.faces.push([a, b, c], sign),
+            [true, false, false] => self.add_tip(a, b, c, sign),
+            [false, true, false] => self.add_tip(b, c, a, sign),
+            [false, false, true] => self.add_tip(c, a, b, sign),
+            [true, true, false] => self.add_rest(a, b, c, sign),
+            [false, true, true] => self.add_rest(b, c, a, sign),
+            [true, false, true] => self.add_rest(c, a, b, sign),
+        }
+    }
+
+    /// Of a triangle only `a` is wet.
+    #[inline(never)]
+    fn add_tip(&mut self, a: &HullPoint, b: &HullPoint, c: &HullPoint, sign: f32) {
+        self.faces.push([a, &cut(a, b), &cut(a, c)], sign);
+    }
+
+    /// Of a triangle only `c` is dry.
+    #[inline(never)]
+    fn add_rest(&mut self, a: &HullPoint, b: &HullPoint, c: &HullPoint, sign: f32) {
+        let (beyond_b, beyond_a) = (cut(b, c), cut(a, c));
+        self.faces.push([a, b, &beyond_b], sign);
+        self.faces.push([a, &beyond_b, &beyond_a], sign);
+    }
+}
+
+/// Where the edge from a wet to a dry point meets the surface.
+fn cut(wet: &HullPoint, dry: &HullPoint) -> HullPoint {
+    let t = wet.depth / (wet.depth - dry.depth);
+    HullPoint { arm: wet.arm.lerp(dry.arm, t), depth: 0.0, velocity: wet.velocity.lerp(dry.velocity, t) }
+}
