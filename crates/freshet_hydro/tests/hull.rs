@@ -112,16 +112,16 @@ fn ring(radius: f32, half: f32) -> Hull {
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
-    Hull::new(&points, &triangles).unwrap()
+    Hull::new(&points, &triangles).expect("a hull")
 }
 
 fn shapes() -> Vec<(&'static str, Hull)> {
     vec![
-        ("ball", Hull::ball(0.6).unwrap()),
-        ("cuboid", Hull::cuboid(vec3(0.5, 0.3, 0.8)).unwrap()),
-        ("cylinder", Hull::cylinder(0.7, 0.4).unwrap()),
-        ("capsule", Hull::capsule(0.5, 0.3).unwrap()),
-        ("cone", Hull::cone(0.5, 0.5).unwrap()),
+        ("ball", Hull::ball(0.6).expect("a hull")),
+        ("cuboid", Hull::cuboid(vec3(0.5, 0.3, 0.8)).expect("a hull")),
+        ("cylinder", Hull::cylinder(0.7, 0.4).expect("a hull")),
+        ("capsule", Hull::capsule(0.5, 0.3).expect("a hull")),
+        ("cone", Hull::cone(0.5, 0.5).expect("a hull")),
         ("ring", ring(0.8, 0.2)),
     ]
 }
@@ -171,7 +171,7 @@ proptest! {
         which in 0..6_usize, rotation in rotations(), height in -1.0..1.0_f32,
         slope in (-0.4..0.4_f32, -0.4..0.4_f32), scale in 0.01..100.0_f32,
     ) {
-        let hull = shapes().swap_remove(which).1.scaled(Vec3::splat(scale)).unwrap();
+        let hull = shapes().swap_remove(which).1.scaled(Vec3::splat(scale)).expect("a hull");
         let mut body = Body::new(hull, 500.0, 0.0);
         body.rotation = rotation;
         let slope = vec2(slope.0, slope.1);
@@ -206,10 +206,10 @@ fn bodies_rest_at_their_analytic_draft() {
         let s = density / WATER_DENSITY;
         let cap = 1.0 + 2.0 * (((1.0 - 2.0 * s).acos() + 4.0 * PI) / 3.0).cos();
         let cases = [
-            ("ball", Hull::ball(0.5).unwrap(), 0.5, 0.5 * cap),
-            ("cuboid", Hull::cuboid(vec3(0.6, 0.25, 0.5)).unwrap(), 0.25, 0.5 * s),
-            ("cylinder", Hull::cylinder(0.25, 0.6).unwrap(), 0.25, 0.5 * s),
-            ("cone", Hull::cone(0.3, 0.6).unwrap(), 0.15, 0.6 * (1.0 - (1.0 - s).cbrt())),
+            ("ball", Hull::ball(0.5).expect("a hull"), 0.5, 0.5 * cap),
+            ("cuboid", Hull::cuboid(vec3(0.6, 0.25, 0.5)).expect("a hull"), 0.25, 0.5 * s),
+            ("cylinder", Hull::cylinder(0.25, 0.6).expect("a hull"), 0.25, 0.5 * s),
+            ("cone", Hull::cone(0.3, 0.6).expect("a hull"), 0.15, 0.6 * (1.0 - (1.0 - s).cbrt())),
         ];
         for (name, hull, lowest, analytic) in cases {
             let mut body = Body::new(hull, density, 0.0);
@@ -231,7 +231,7 @@ fn bodies_rest_at_their_analytic_draft() {
 fn a_cube_stands_only_if_it_is_light_or_heavy() {
     for (s, stands) in [(0.15, true), (0.2, true), (0.23, false), (0.5, false), (0.77, false), (0.8, true), (0.9, true)]
     {
-        let mut body = Body::new(Hull::cuboid(Vec3::splat(0.5)).unwrap(), s * WATER_DENSITY, 0.5 - s);
+        let mut body = Body::new(Hull::cuboid(Vec3::splat(0.5)).expect("a hull"), s * WATER_DENSITY, 0.5 - s);
         body.rotation = Quat::from_euler(EulerRot::XYZ, 0.01, 0.0, 0.006);
         run(&mut body, STILL, 60.0, 60.0);
         let up = Mat3::from_quat(body.rotation).transpose() * Vec3::Y;
@@ -259,7 +259,7 @@ fn boxes_heave_and_roll_with_the_periods_of_naval_architecture() {
     for (beam, s) in [(1.5, 0.3), (2.0, 0.3), (2.0, 0.5), (2.0, 0.7), (3.0, 0.5), (4.0, 0.4)] {
         let height = 0.8;
         let make = || {
-            let hull = Hull::cuboid(vec3(0.5 * beam, 0.5 * height, 3.0)).unwrap();
+            let hull = Hull::cuboid(vec3(0.5 * beam, 0.5 * height, 3.0)).expect("a hull");
             let mut body = Body::new(hull, s * WATER_DENSITY, height * (0.5 - s));
             body.drag = SLICK;
             body
@@ -300,7 +300,7 @@ fn boxes_heave_and_roll_with_the_periods_of_naval_architecture() {
 fn balls_sink_and_rise_at_their_terminal_velocity() {
     for density in [2000.0, 500.0] {
         for radius in [0.05, 0.3] {
-            let mut body = Body::new(Hull::ball(radius).unwrap(), density, -500.0);
+            let mut body = Body::new(Hull::ball(radius).expect("a hull"), density, -500.0);
             run(&mut body, STILL, 20.0, 60.0);
             let net = (density - WATER_DENSITY).abs() * body.hull.volume() * GRAVITY;
             let terminal = (2.0 * net / (WATER_DENSITY * 0.47 * PI * radius * radius)).sqrt();
@@ -327,7 +327,7 @@ fn a_stream_carries_bodies_at_its_speed() {
 fn a_towed_plank_is_resisted_as_its_formula_says() {
     let half = vec3(0.05, 0.15, 3.0);
     for speed in [0.5, 2.0, 6.0] {
-        let mut body = Body::new(Hull::cuboid(half).unwrap(), 500.0, -50.0);
+        let mut body = Body::new(Hull::cuboid(half).expect("a hull"), 500.0, -50.0);
         body.motion.linear = Vec3::Z * speed;
         let load = body.load(STILL);
         let resistance = -(load.stream + load.resistance.times(&body.motion) * -1.0).force.z;
@@ -377,7 +377,7 @@ fn bodies_of_every_size_come_to_rest() {
             (900.0, 30.0, 20.0),
             (5.0, 100.0, 20.0),
         ] {
-            let hull = hull.clone().scaled(Vec3::splat(size)).unwrap();
+            let hull = hull.clone().scaled(Vec3::splat(size)).expect("a hull");
             let mut body = Body::new(hull, density, 2.0 * size);
             body.rotation = Quat::from_euler(EulerRot::XYZ, 0.4, 0.2, 0.7);
             run(&mut body, STILL, 30.0 * size.max(1.0).sqrt(), rate);
@@ -418,7 +418,7 @@ fn a_fall_from_a_hundred_metres_ends_in_the_water() {
 #[test]
 fn light_things_do_not_jitter() {
     for (name, hull, density) in
-        [("cork", Hull::cylinder(0.01, 0.008).unwrap(), 200.0), ("beach ball", Hull::ball(0.2).unwrap(), 10.0)]
+        [("cork", Hull::cylinder(0.01, 0.008).expect("a hull"), 200.0), ("beach ball", Hull::ball(0.2).expect("a hull"), 10.0)]
     {
         let mut body = Body::new(hull, density, 0.01);
         body.rotation = Quat::from_rotation_z(0.3);
