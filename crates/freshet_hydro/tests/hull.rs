@@ -417,9 +417,10 @@ fn a_fall_from_a_hundred_metres_ends_in_the_water() {
 /// A cork of 2 cm and a beach ball of 10 kg/m³ lie still.
 #[test]
 fn light_things_do_not_jitter() {
-    for (name, hull, density) in
-        [("cork", Hull::cylinder(0.01, 0.008).expect("a hull"), 200.0), ("beach ball", Hull::ball(0.2).expect("a hull"), 10.0)]
-    {
+    for (name, hull, density) in [
+        ("cork", Hull::cylinder(0.01, 0.008).expect("a hull"), 200.0),
+        ("beach ball", Hull::ball(0.2).expect("a hull"), 10.0),
+    ] {
         let mut body = Body::new(hull, density, 0.01);
         body.rotation = Quat::from_rotation_z(0.3);
         run(&mut body, STILL, 10.0, 60.0);
