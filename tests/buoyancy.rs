@@ -346,9 +346,15 @@ fn bad_input_is_survived() {
         let ball = || Collider::ball(0.3);
         bodies.push(app.world_mut().spawn(body(ball(), Floating::with_density(density), 0.0)).id());
         bodies.push(app.world_mut().spawn(body(ball(), Floating::with_mass(density), 0.0)).id());
-        let mut odd = Floating { damping: density, drag_coefficient: density, ..default() };
-        odd.cells_per_axis = 0;
-        bodies.push(app.world_mut().spawn(body(ball(), odd, 0.0)).id());
+        for model in
+            [BuoyancyModel::Hull, BuoyancyModel::Voxels { per_axis: 0 }, BuoyancyModel::Samples { spacing: density }]
+        {
+            let [friction, bluff_drag, fair_drag, radiation] = [density; 4];
+            let center_of_mass = Some(Vec3::splat(density));
+            let drags = Floating { friction, bluff_drag, fair_drag, radiation, ..default() };
+            let odd = Floating { model, max_triangles: 0, center_of_mass, ..drags };
+            bodies.push(app.world_mut().spawn(body(ball(), odd, 0.0)).id());
+        }
     }
     for scale in [Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0), Vec3::splat(1e-6), Vec3::new(-1.0, 1.0, 1.0)] {
         let cube = app.world_mut().spawn(body(Collider::cuboid(0.5, 0.5, 0.5), Floating::default(), 0.0)).id();

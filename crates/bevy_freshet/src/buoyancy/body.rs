@@ -1,7 +1,7 @@
 //! A floating body: its hull, built from its colliders or its mesh, and the mass that follows from it.
 
 use super::{
-    floating::{Buoyancy, Floating, Weight},
+    floating::{Buoyancy, BuoyancyModel, Floating, Weight},
     footprint::Footprint,
     force::{Lent, Rest},
     form::Form,
@@ -16,7 +16,7 @@ use bevy_rapier3d::{
     rapier::prelude::{ColliderSet, RigidBody},
 };
 use freshet_hydro::hull::HullDrag;
-use std::sync::Arc;
+use std::{ops::RangeInclusive, sync::Arc};
 
 /// State of a floating body between systems.
 #[derive(Component, Default)]
@@ -104,14 +104,20 @@ impl Source {
 
 impl Body {
     /// Makes the hull of the solids; without any there is none, and the body falls through the water.
-    fn build(&mut self, solids: Vec<Solid>, floating: &Floating, report: &mut impl FnMut(Flaw)) -> Result<(), String> {
+    fn build(
+        &mut self,
+        solids: Vec<Solid>,
+        model: BuoyancyModel,
+        most: usize,
+        report: &mut impl FnMut(Flaw),
+    ) -> Result<(), String> {
         self.form = None;
         self.submerged = None;
         self.solids = solids;
         if self.solids.is_empty() {
             return Err("has neither a collider nor a mesh with a volume; the body does not float".into());
         }
-        let form = Form::new(&self.solids, floating, report);
+        let form = Form::new(&self.solids, model, most, report);
         self.form = Some(form.map_err(|problem| format!("{problem}; the body does not float"))?);
         Ok(())
     }
@@ -152,6 +158,24 @@ impl Body {
         body.set_additional_mass_properties(properties, true);
         body.recompute_mass_properties_from_colliders(colliders);
     }
+}
+
+/// Checked model, and how many triangles a hull may have.
+fn resolve_model(entity: Entity, floating: &Floating, reported: &mut Reported) -> (BuoyancyModel, usize) {
+    let mut whole = |field, value: u32, range: RangeInclusive<f32>, usual| {
+        reported.clamp(entity, field, value as f32, range, usual) as u32
+    };
+    let most = whole("Floating::max_triangles", floating.max_triangles, 12.0..=20_000.0, 400.0);
+    let model = match floating.model {
+        BuoyancyModel::Hull => BuoyancyModel::Hull,
+        BuoyancyModel::Voxels { per_axis } => {
+            BuoyancyModel::Voxels { per_axis: whole("BuoyancyModel::Voxels::per_axis", per_axis, 1.0..=16.0, 4.0) }
+        }
+        BuoyancyModel::Samples { spacing } => BuoyancyModel::Samples {
+            spacing: reported.clamp(entity, "BuoyancyModel::Samples::spacing", spacing, 1e-3..=1e3, 0.1),
+        },
+    };
+    (model, most as usize)
 }
 
 /// Checked drag settings.
@@ -197,6 +221,7 @@ pub(super) fn build_hulls(
         }
         let source = Source::of(body, &colliders.colliders, mesh, transform.scale());
         if source != state.source || floating.is_changed() {
+            let (model, most) = resolve_model(entity, &floating, &mut reported);
             let mut report = |flaw: Flaw| reported.warn(entity, "Floating: a shape", flaw);
             let Some(solids) = source.solids(meshes.as_deref(), &mut report) else {
                 // The mesh still loads. An empty source asks again in the next step.
@@ -204,7 +229,7 @@ pub(super) fn build_hulls(
                 continue;
             };
             state.source = source;
-            if let Err(problem) = state.build(solids, &floating, &mut report) {
+            if let Err(problem) = state.build(solids, model, most, &mut report) {
                 reported.warn(entity, "Floating", problem);
             }
             state.drag = resolve_drag(entity, &floating, &mut reported);

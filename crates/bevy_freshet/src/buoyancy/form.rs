@@ -1,6 +1,6 @@
 //! What a body looks like to the water, in the model that its settings choose.
 use super::{
-    floating::{BuoyancyModel, Floating},
+    floating::BuoyancyModel,
     solid::{Flaw, Solid, hull_of, voxelize},
 };
 use bevy::prelude::*;
@@ -30,10 +30,14 @@ enum Model {
 
 impl Form {
     /// The hull of `solids` and what the settings make of it.
-    pub fn new(solids: &[Solid], floating: &Floating, report: &mut impl FnMut(Flaw)) -> Result<Self, String> {
-        let most = floating.max_triangles.clamp(12, 20_000) as usize;
+    pub fn new(
+        solids: &[Solid],
+        model: BuoyancyModel,
+        most: usize,
+        report: &mut impl FnMut(Flaw),
+    ) -> Result<Self, String> {
         let hull = hull_of(solids, report).map_err(|error| error.to_string())?.simplified(most);
-        let model = match floating.model {
+        let model = match model {
             BuoyancyModel::Hull => Model::Hull(Vec::with_capacity(hull.points().len())),
             BuoyancyModel::Voxels { per_axis } => {
                 let voxels = voxelize(solids, per_axis).and_then(|voxels| voxels.with_volume(hull.volume()));

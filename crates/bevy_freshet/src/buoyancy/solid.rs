@@ -104,15 +104,23 @@ impl Solid {
             T::Cuboid(cuboid) => Hull::cuboid(cuboid.half_extents),
             T::Cylinder(cylinder) => Hull::cylinder(cylinder.half_height, cylinder.radius),
             T::Cone(cone) => Hull::cone(cone.half_height, cone.radius),
+            T::Capsule(capsule) if capsule.half_height() <= 0.0 => {
+                Hull::ball(capsule.radius).and_then(|hull| hull.placed(Quat::IDENTITY, capsule.center()))
+            }
             T::Capsule(capsule) => Hull::capsule(capsule.half_height(), capsule.radius)
                 .and_then(|hull| hull.placed(capsule.rotation_wrt_y(), capsule.center())),
-            T::RoundCuboid(round) => Hull::round_cuboid(round.inner_shape.half_extents, round.border_radius),
-            T::RoundCylinder(round) => {
-                Hull::round_cylinder(round.inner_shape.half_height, round.inner_shape.radius, round.border_radius)
-            }
-            T::RoundCone(round) => {
-                Hull::round_cone(round.inner_shape.half_height, round.inner_shape.radius, round.border_radius)
-            }
+            T::RoundCuboid(round) => match (round.inner_shape.half_extents, round.border_radius) {
+                (half, 0.0) => Hull::cuboid(half),
+                (half, border) => Hull::round_cuboid(half, border),
+            },
+            T::RoundCylinder(round) => match (round.inner_shape.half_height, round.inner_shape.radius) {
+                (half_height, radius) if round.border_radius == 0.0 => Hull::cylinder(half_height, radius),
+                (half_height, radius) => Hull::round_cylinder(half_height, radius, round.border_radius),
+            },
+            T::RoundCone(round) => match (round.inner_shape.half_height, round.inner_shape.radius) {
+                (half_height, radius) if round.border_radius == 0.0 => Hull::cone(half_height, radius),
+                (half_height, radius) => Hull::round_cone(half_height, radius, round.border_radius),
+            },
             T::RoundConvexPolyhedron(round) => rounded(&round.inner_shape, round.border_radius),
             T::ConvexPolyhedron(polyhedron) => {
                 let (points, triangles) = polyhedron.to_trimesh();
@@ -207,9 +215,9 @@ fn mean_curvature(hull: &Hull) -> f32 {
 /// The surface of the union of `solids`.
 pub(super) fn hull_of(solids: &[Solid], report: &mut impl FnMut(Flaw)) -> Result<Hull, HullError> {
     let parts = solids.iter().map(Solid::hull).collect::<Result<Vec<_>, _>>()?;
-    let Union { hull, counted_twice } = Hull::union(parts)?;
-    if counted_twice > 0 {
-        report(Flaw::Overlap(counted_twice));
+    let Union { hull, doubled } = Hull::union(parts)?;
+    if doubled > 0 {
+        report(Flaw::Overlap(doubled));
     }
     Ok(hull)
 }
@@ -244,71 +252,89 @@ pub(super) fn voxelize(solids: &[Solid], cells_per_axis: u32) -> Result<VoxelHul
 mod tests {
     use super::*;
     use bevy::math::primitives::{Cuboid, Sphere};
+    use bevy_rapier3d::parry::shape::RoundShape;
     use core::f32::consts::PI;
 
-    fn hull_of(shape: SharedShape) -> (VoxelHull, Vec<Flaw>) {
+    fn solids_of(shape: &SharedShape) -> (Vec<Solid>, Vec<Flaw>) {
         let (mut solids, mut flaws) = (Vec::new(), Vec::new());
-        Solid::collect(&shape, Pose::IDENTITY, &mut solids, &mut |flaw| flaws.push(flaw));
-        (voxelize(&solids, 4).unwrap(), flaws)
+        Solid::collect(shape, Pose::IDENTITY, &mut solids, &mut |flaw| flaws.push(flaw));
+        (solids, flaws)
     }
 
-    /// Scaled shapes of known volume; sampled ones within 3 %.
+    fn hull(shape: &SharedShape) -> (Hull, Vec<Flaw>) {
+        let (solids, mut flaws) = solids_of(shape);
+        (hull_of(&solids, &mut |flaw| flaws.push(flaw)).unwrap(), flaws)
+    }
+
+    /// Shapes of known volume; the hull has it exactly, voxels before they are scaled to it within 3 %.
     #[test]
     fn shapes_have_their_volume() {
         let corners: Vec<Vec3> =
             (0..8).map(|i| Vec3::from([0, 1, 2].map(|axis| f32::from(i >> axis & 1 == 1)))).collect();
+        let polyhedron = match SharedShape::convex_hull(&corners).unwrap().as_convex_polyhedron() {
+            Some(polyhedron) => polyhedron.clone(),
+            None => unreachable!("a convex hull is one"),
+        };
+        let rounded = 0.512 + 6.0 * 0.064 + 3.0 * 0.8 * PI * 0.01 + PI / 750.0;
+        // A unit cube with a border of 0.1 m: 1 + 6 r + 3 π r² + 4/3 π r³.
+        let around = 1.0 + 0.6 + 0.03 * PI + PI / 750.0;
+        let round = RoundShape { inner_shape: polyhedron, border_radius: 0.1 };
         let cases = [
             (SharedShape::ball(0.5), PI / 6.0),
             (SharedShape::cuboid(0.5, 1.0, 2.0), 8.0),
             (SharedShape::cylinder(1.0, 0.5), PI / 2.0),
             (SharedShape::cone(1.0, 0.5), PI / 6.0),
             (SharedShape::capsule_y(0.5, 0.5), PI / 4.0 + PI / 6.0),
+            (SharedShape::capsule_x(0.0, 0.5), PI / 6.0),
             (SharedShape::convex_hull(&corners).unwrap(), 1.0),
-            (SharedShape::round_cuboid(0.4, 0.4, 0.4, 0.1), 0.512 + 6.0 * 0.064 + 3.0 * 0.8 * PI * 0.01 + PI / 750.0),
+            (SharedShape::round_cuboid(0.4, 0.4, 0.4, 0.1), rounded),
+            (SharedShape::round_cuboid(0.4, 0.4, 0.4, 0.0), 0.512),
+            (SharedShape::new(round), around),
         ];
         for (shape, volume) in cases {
-            let (hull, flaws) = hull_of(shape);
-            assert!((hull.volume() / volume - 1.0).abs() < 0.03, "{} instead of {volume}", hull.volume());
+            let (hull, flaws) = hull(&shape);
+            assert!((hull.volume() / volume - 1.0).abs() < 1e-5, "{} instead of {volume}", hull.volume());
             assert!(flaws.is_empty());
-            let cells: f32 = hull.cells().iter().map(|cell| cell.volume).sum();
-            assert!((cells / hull.volume() - 1.0).abs() < 1e-4);
+            let voxels = voxelize(&solids_of(&shape).0, 4).unwrap();
+            assert!((voxels.volume() / volume - 1.0).abs() < 0.03, "{} instead of {volume}", voxels.volume());
         }
     }
 
-    /// Two cubes that overlap by half count 1.5 m³; a plank thinner than a sample keeps its exact volume.
+    /// Parts are where their poses put them.
     #[test]
     fn compounds_count_overlap_once() {
         let cube = SharedShape::cuboid(0.5, 0.5, 0.5);
         let at = |x: f32| Pose::from_translation(Vec3::X * x);
-        let (hull, _) = hull_of(SharedShape::compound(vec![(at(0.0), cube.clone()), (at(0.5), cube.clone())]));
-        assert!((hull.volume() - 1.5).abs() < 0.06, "{}", hull.volume());
+        let (half, _) = hull(&SharedShape::compound(vec![(at(0.0), cube.clone()), (at(0.5), cube.clone())]));
+        assert!((half.volume() - 1.5).abs() < 1e-5 && half.centroid().abs_diff_eq(Vec3::X * 0.25, 1e-5));
         let plank = SharedShape::cuboid(0.02, 0.5, 0.5);
-        let (hull, _) = hull_of(SharedShape::compound(vec![(at(0.0), cube), (at(3.0), plank)]));
-        assert!((hull.volume() - 1.04).abs() < 1e-4, "{}", hull.volume());
+        let (apart, _) = hull(&SharedShape::compound(vec![(at(0.0), cube), (at(3.0), plank)]));
+        assert!((apart.volume() - 1.04).abs() < 1e-5 && (apart.centroid().x - 0.12 / 1.04).abs() < 1e-5);
     }
 
     #[test]
     fn meshes_are_solid_if_closed() {
         let mut flaws = Vec::new();
-        let sphere = Sphere::new(1.0).mesh().ico(9).unwrap();
-        let solid = Solid::from_mesh(&sphere, Vec3::new(1.0, 2.0, 1.0), &mut |flaw| flaws.push(flaw)).unwrap();
-        let hull = voxelize(&[solid], 4).unwrap();
-        assert!((hull.volume() / (8.0 / 3.0 * PI) - 1.0).abs() < 0.02, "{}", hull.volume());
-        let mirrored =
-            Solid::from_mesh(&Cuboid::default().into(), Vec3::new(-1.0, 1.0, 1.0), &mut |flaw| flaws.push(flaw));
-        assert!((voxelize(&[mirrored.unwrap()], 4).unwrap().volume() - 1.0).abs() < 1e-4);
-        assert!(flaws.is_empty());
+        let mut volume = |mesh: &Mesh, scale| {
+            let solid = Solid::from_mesh(mesh, scale, &mut |flaw| flaws.push(flaw)).unwrap();
+            hull_of(&[solid], &mut |flaw| flaws.push(flaw)).unwrap().volume()
+        };
+        // The volume of the mesh, a little less than the sphere's.
+        let sphere = volume(&Sphere::new(1.0).mesh().ico(9).unwrap(), Vec3::new(1.0, 2.0, 1.0));
+        assert!((sphere / (8.0 / 3.0 * PI) - 1.0).abs() < 0.02, "{sphere}");
+        let mirrored = volume(&Cuboid::default().into(), Vec3::new(-1.0, 1.0, 1.0));
+        assert!((mirrored - 1.0).abs() < 1e-5);
+        assert!(flaws.is_empty(), "{flaws:?}");
     }
 
     #[test]
     fn open_and_hollow_shapes_are_named() {
         let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let open = SharedShape::trimesh(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2]]).unwrap();
-        let (hull, flaws) = hull_of(open);
-        assert_eq!(flaws, [Flaw::Open]);
-        assert!((hull.volume() - 1.0 / 6.0).abs() < 1e-4);
-        let (mut solids, mut flaws) = (Vec::new(), Vec::new());
-        Solid::collect(&SharedShape::halfspace(Vec3::Y), Pose::IDENTITY, &mut solids, &mut |flaw| flaws.push(flaw));
+        let (tetrahedron, flaws) = hull(&open);
+        assert!(matches!(flaws[..], [Flaw::Open(HullError::Open { edges: 3, .. })]), "{flaws:?}");
+        assert!((tetrahedron.volume() - 1.0 / 6.0).abs() < 1e-5);
+        let (solids, flaws) = solids_of(&SharedShape::halfspace(Vec3::Y));
         assert!(solids.is_empty());
         assert_eq!(flaws, [Flaw::NoVolume]);
     }
