@@ -80,13 +80,14 @@ fn spheres_rest_at_their_draft() {
     for density in [250.0, 500.0, 750.0] {
         let (mut app, _) = still_water();
         let sphere = app.world_mut().spawn(body(Collider::ball(0.5), Floating::with_density(density), 0.8)).id();
-        run(&mut app, 20.0);
+        run(&mut app, 60.0);
         let exact = sphere_draft(0.5, density / WATER_DENSITY);
         let draft = LEVEL - (read::<Transform>(&app, sphere).translation.y - 0.5);
-        println!("sphere {density}: draft {draft} m, exact {exact} m");
-        assert_near(draft, exact, 0.05, "draft");
+        let speed = read::<Velocity>(&app, sphere).linear;
+        println!("sphere {density}: draft {draft} m, exact {exact} m, velocity {speed} m/s");
+        assert_near(draft, exact, 0.005, "draft");
         assert_near(read::<Buoyancy>(&app, sphere).draft, draft, 1e-3, "reported draft");
-        assert!(read::<Velocity>(&app, sphere).linear.length() < 1e-3);
+        assert!(speed.length() < 1e-3);
     }
 }
 
@@ -96,10 +97,10 @@ fn upright_cubes_rest_at_their_draft() {
         let (mut app, _) = still_water();
         let cube = body(Collider::cuboid(0.5, 0.5, 0.5), Floating::with_density(density), 0.8);
         let cube = app.world_mut().spawn((cube, LockedAxes::ROTATION_LOCKED)).id();
-        run(&mut app, 20.0);
+        run(&mut app, 60.0);
         let draft = LEVEL - (read::<Transform>(&app, cube).translation.y - 0.5);
         println!("cube {density}: draft {draft} m, exact {} m", density / WATER_DENSITY);
-        assert_near(draft, density / WATER_DENSITY, 0.05, "draft");
+        assert_near(draft, density / WATER_DENSITY, 0.005, "draft");
     }
 }
 
@@ -134,11 +135,11 @@ fn drift(half: f32, density: f32, axes: LockedAxes) -> (f32, f32) {
 }
 
 /// A cube that cannot roll never outruns the stream. A free one tips over on its way, and its centre swings by less
-/// than 5 %.
+/// than 10 %.
 #[test]
 fn a_stream_carries_bodies_at_its_speed() {
     for (half, density) in [(0.5, 500.0), (0.05, 100.0), (1.0, 900.0), (0.01, 20.0)] {
-        for (axes, limit) in [(LockedAxes::ROTATION_LOCKED, 1.0001), (LockedAxes::empty(), 1.05)] {
+        for (axes, limit) in [(LockedAxes::ROTATION_LOCKED, 1.0001), (LockedAxes::empty(), 1.1)] {
             let (speed, highest) = drift(half, density, axes);
             println!("cube of {} m, {density} kg/m³, {axes:?}: {speed} m/s, at most {highest} m/s", 2.0 * half);
             assert_near(speed, 1.0, 0.05, "speed");
@@ -501,4 +502,64 @@ fn the_order_of_systems_is_decided() {
     });
     app.add_systems(FixedUpdate, || {});
     run(&mut app, 0.1);
+}
+
+/// When parts of a step began and ended, and how long they took in all, s.
+#[derive(Resource, Default)]
+struct Stopwatch {
+    began: Option<std::time::Instant>,
+    water: f64,
+    forces: f64,
+    solver: f64,
+}
+
+impl Stopwatch {
+    fn start(mut watch: ResMut<Self>) {
+        watch.began = Some(std::time::Instant::now());
+    }
+
+    fn lap(&mut self) -> f64 {
+        let now = std::time::Instant::now();
+        self.began.replace(now).map_or(0.0, |began| (now - began).as_secs_f64())
+    }
+}
+
+/// What floating crates cost beside the solver's own step, on waves. `cargo test … what_bodies_cost -- --ignored --nocapture`.
+#[test]
+#[ignore = "measures"]
+fn what_bodies_cost() {
+    println!("| crates | water, µs per crate | forces, µs per crate | solver, µs per crate |\n|---|---|---|---|");
+    for count in [1, 10, 100, 1000, 2000] {
+        let mut app = app();
+        let water = (Water::new(Vec2::splat(4000.0)), WaterWaves::default(), Transform::from_xyz(0.0, LEVEL, 0.0));
+        app.world_mut().spawn(water);
+        app.init_resource::<Stopwatch>().add_systems(
+            FixedUpdate,
+            (
+                Stopwatch::start.after(PhysicsSet::SyncBackend).before(WaterSystems::Sample),
+                (|mut watch: ResMut<Stopwatch>| watch.water += watch.lap())
+                    .after(WaterSystems::Sample)
+                    .before(WaterSystems::Force),
+                (|mut watch: ResMut<Stopwatch>| watch.forces += watch.lap())
+                    .after(WaterSystems::Force)
+                    .before(PhysicsSet::StepSimulation),
+                (|mut watch: ResMut<Stopwatch>| watch.solver += watch.lap())
+                    .after(PhysicsSet::StepSimulation)
+                    .before(PhysicsSet::Writeback),
+            ),
+        );
+        for k in 0..count {
+            let crate_ = body(Collider::cuboid(0.5, 0.5, 0.5), Floating::with_density(400.0), 0.0);
+            let crate_ = app.world_mut().spawn(crate_).id();
+            let place = Vec3::new(1.6 * (k % 50) as f32 - 40.0, LEVEL, 1.6 * (k / 50) as f32 - 32.0);
+            app.world_mut().get_mut::<Transform>(crate_).unwrap().translation = place;
+        }
+        run(&mut app, 1.0);
+        *app.world_mut().resource_mut::<Stopwatch>() = Stopwatch::default();
+        run(&mut app, 2.0);
+        let watch = app.world().resource::<Stopwatch>();
+        let per_crate = |seconds: f64| 1e6 * seconds / (120 * count) as f64;
+        let [water, forces, solver] = [watch.water, watch.forces, watch.solver].map(per_crate);
+        println!("| {count} | {water:.2} | {forces:.2} | {solver:.2} |");
+    }
 }

@@ -1,15 +1,23 @@
-//! Steps take no memory: with a counting allocator, which is why this is a binary of its own.
+//! Steps of water and the loads of bodies take no memory: with a counting allocator, which is why this is a binary of its own.
 #![expect(unsafe_code, reason = "an allocator is unsafe by its trait")]
 
 use freshet_hydro::{
     grid::Grid,
+    hull::{Hull, HullDrag},
+    load::{Fluid, Motion, Pose, Surface},
     shallow_water::{DomainSide, Edge, EdgePart, PointSource, Series, ShallowWater},
 };
-use glam::{UVec2, Vec2};
+use glam::{Quat, UVec2, Vec2, Vec3};
 use std::{
     alloc::{GlobalAlloc, Layout, System},
-    sync::atomic::{AtomicUsize, Ordering},
+    sync::{
+        Mutex,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
+
+/// The count is of the whole binary: its tests take turns.
+static TURN: Mutex<()> = Mutex::new(());
 
 /// The system's allocator, counting.
 struct Counting;
@@ -64,6 +72,7 @@ fn water() -> ShallowWater {
 /// After the first steps, a hundred more ask for no memory.
 #[test]
 fn a_step_takes_no_memory() {
+    let _turn = TURN.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let taken = pool.install(|| {
         let mut water = water();
@@ -75,5 +84,26 @@ fn a_step_takes_no_memory() {
         taken
     });
     println!("100 steps asked {taken} times for memory");
+    assert_eq!(taken, 0);
+}
+
+/// A hull that bobs and turns asks for memory in its first step only.
+#[test]
+fn a_load_takes_no_memory() {
+    let _turn = TURN.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let hull = Hull::capsule(0.5, 0.3).expect("a capsule");
+    let mut points = Vec::new();
+    let mut load = |k: u16| {
+        let angle = 0.1 * f32::from(k);
+        let pose = Pose { position: Vec3::Y * (0.4 * angle.sin()), rotation: Quat::from_rotation_z(angle) };
+        let surface = |place: Vec2| Some(Surface { height: 0.1 * place.x, ..Surface::default() });
+        let (motion, fluid, drag) = (Motion::default(), Fluid::default(), HullDrag::default());
+        hull.load(&pose, pose.position, &motion, &fluid, &drag, &mut points, surface).submerged_volume
+    };
+    load(0);
+    let before = COUNT.load(Ordering::Relaxed);
+    let volume: f32 = (1..100).map(load).sum();
+    let taken = COUNT.load(Ordering::Relaxed) - before;
+    println!("99 loads asked {taken} times for memory, {volume} m³ in all");
     assert_eq!(taken, 0);
 }

@@ -16,6 +16,12 @@ use freshet_hydro::load::Surface;
 /// Places along each side of the lattice under a hull: waves as long as the hull are seen, much shorter ones are not.
 const PLACES: usize = 4;
 
+/// Deviation from what the corners say, as a share of the footprint, up to which the water counts as flat.
+const FLAT: f32 = 1e-3;
+
+/// The same for its velocity, m/s.
+const EVEN: f32 = 0.01;
+
 /// Water on an n × n lattice that spans a rectangle of the xz plane. A body has many more cells than the lattice has
 /// places, and a search for the wave above a place costs more than a cell.
 #[derive(Default)]
@@ -29,18 +35,38 @@ pub(super) struct Footprint {
 }
 
 impl Footprint {
-    /// Looks up the water at `places`² (at least 2²) points from corner to corner of `area`.
+    /// Looks up the water at `places`² (at least 2²) points from corner to corner of `area`; at its corners only where that is enough:
+    /// where two places within differ from what the corners say by less than [`FLAT`].
     fn look_up(&mut self, area: Rect, places: usize, water: impl Fn(Vec2) -> Option<Surface>) {
         self.min = area.min;
         self.size = area.size();
-        self.places = places.max(2);
-        let step = self.size / (self.places - 1) as f32;
+        self.look_up_lattice(2, &water);
+        let is_near = |within: Vec2| {
+            let place = self.min + self.size * within;
+            let (Some(expected), Some(found)) = (self.at(place), water(place)) else { return false };
+            (expected.height - found.height).abs() <= FLAT * self.size.max_element()
+                && expected.velocity.distance(found.velocity) <= EVEN
+        };
+        // The second lies where no wave that fits the corners and the middle does.
+        if places > 2 && !(is_near(Vec2::splat(0.5)) && is_near(vec2(0.31, 0.66))) {
+            self.look_up_lattice(places, &water);
+        }
+    }
+
+    fn look_up_lattice(&mut self, places: usize, water: &impl Fn(Vec2) -> Option<Surface>) {
+        self.places = places;
+        let step = self.size / (places - 1) as f32;
         self.samples.clear();
-        for row in 0..self.places {
-            for column in 0..self.places {
+        for row in 0..places {
+            for column in 0..places {
                 self.samples.push(water(self.min + step * Vec2::new(column as f32, row as f32)));
             }
         }
+    }
+
+    /// Whether its corners say all.
+    pub(super) fn is_flat(&self) -> bool {
+        self.places == 2
     }
 
     /// Whether no place has water.
@@ -90,29 +116,27 @@ pub(super) fn sample_water(
     contexts: Query<&RapierRigidBodySet>,
     water: WaterQuery,
 ) {
-    for (floating, handle, link, mut state) in &mut bodies {
+    // Bodies do not know of each other here: the order in which threads take them changes nothing.
+    bodies.par_iter_mut().for_each(|(floating, handle, link, mut state)| {
         let state = &mut *state;
-        let Some(body) = contexts.get(link.0).ok().and_then(|set| set.bodies.get(handle.0)) else { continue };
+        let Some(body) = contexts.get(link.0).ok().and_then(|set| set.bodies.get(handle.0)) else { return };
         if state.form.is_none() || !body.is_dynamic() || !body.is_enabled() {
-            continue;
+            return;
         }
         let aabb = bounds(&state.solids, body.position());
         // Where waters lie above one another the keel tells which one the body is in.
         let height = aabb.mins.y;
+        let places = match floating.model {
+            BuoyancyModel::Voxels { per_axis } => per_axis.clamp(2, 16) as usize,
+            _ => PLACES,
+        };
         state.footprint.lowest = height;
-        state.footprint.look_up(
-            Rect::from_corners(aabb.mins.xz(), aabb.maxs.xz()),
-            match floating.model {
-                BuoyancyModel::Voxels { per_axis } => per_axis.min(16) as usize,
-                _ => PLACES,
-            },
-            |at| {
-                let found = water.sample(Vec3::new(at.x, height, at.y)).as_ref().and_then(surface)?;
-                let velocity = if floating.current { found.velocity } else { Vec3::ZERO };
-                Some(Surface { velocity, ..found })
-            },
-        );
-    }
+        state.footprint.look_up(Rect::from_corners(aabb.mins.xz(), aabb.maxs.xz()), places, |at| {
+            let found = water.sample(Vec3::new(at.x, height, at.y)).as_ref().and_then(surface)?;
+            let velocity = if floating.current { found.velocity } else { Vec3::ZERO };
+            Some(Surface { velocity, ..found })
+        });
+    });
 }
 
 #[cfg(test)]

@@ -15,9 +15,12 @@ use bevy_rapier3d::{
 };
 use freshet_hydro::load::{Fluid, Inertia, Load, Motion, Pose, Wrench};
 
-/// Speed of a body's fastest point, m/s, above which a body in the water does not go to sleep. Rapier's own threshold of
-/// 0.05 m/s would freeze what drifts in a slow current, or still bobs by a centimetre.
-const RESTING_SPEED: f32 = 0.01;
+/// Share of √(g L), L being the length of a body, above which its speed keeps it from sleep in the water: it lies within 10⁻³ L of its
+/// place then. Rapier's own threshold of 0.05 m/s would freeze what drifts in a slow current, or still bobs by a centimetre.
+const RESTING_SPEED: f32 = 1e-3;
+
+/// The same for the speed at which its ends turn. A ball may spin for long: only its skin resists that.
+const RESTING_TURN: f32 = 5e-3;
 
 /// Change of the water's force, as a share of the body's weight, that wakes it: 2 mm of level under a crate of 20 cm.
 const WAKING_SHARE: f32 = 0.01;
@@ -73,7 +76,7 @@ fn load(state: &mut Body, body: &RigidBody, gravity: Vec3) -> Load {
     let pose = Pose { position: body.translation(), rotation: *body.rotation() };
     let fluid = Fluid { gravity: (-gravity.y).max(0.0), ..Fluid::default() };
     let centre = body.center_of_mass();
-    let mut load = form.load(&pose, centre, &motion(body), &fluid, drag, |at| footprint.at(at));
+    let mut load = form.load(&pose, centre, &motion(body), &fluid, drag, footprint);
     let share = load.submerged_volume / form.hull.volume();
     *submerged = Some(share);
     load.entering = before.filter(|before| share > *before).map_or(0.0, |before| 1.0 - before / share);
@@ -100,9 +103,10 @@ fn force(load: &Load, body: &RigidBody, gravity: Vec3, dt: f32) -> Wrench {
     if wrench.is_finite() { wrench } else { Wrench::ZERO }
 }
 
-/// Whether any point of `body` moves faster than [`RESTING_SPEED`].
-fn is_moving(body: &RigidBody, length: f32) -> bool {
-    body.linvel().length() + body.angvel().length() * length > RESTING_SPEED
+/// Whether `body`, of this length (m), moves or turns too fast to go to sleep.
+fn is_moving(body: &RigidBody, length: f32, gravity: f32) -> bool {
+    let speed = (gravity * length).sqrt();
+    body.linvel().length() > RESTING_SPEED * speed || body.angvel().length() * length > RESTING_TURN * speed
 }
 
 /// Computes the forces on all bodies and lends them to the solver; wakes sleepers whose water has changed.
@@ -138,7 +142,8 @@ pub(super) fn lend_forces(
             water_velocity: load.water_velocity,
         });
 
-        let wake = body.is_sleeping() || (load.submerged_volume > 0.0 && is_moving(body, state.length()));
+        let wake = body.is_sleeping()
+            || (load.submerged_volume > 0.0 && is_moving(body, state.length(), config.gravity.length()));
         if !wake && wrench == Wrench::ZERO {
             continue;
         }

@@ -1,12 +1,13 @@
 //! What a body looks like to the water, in the model that its settings choose.
 use super::{
     floating::BuoyancyModel,
+    footprint::Footprint,
     solid::{Flaw, Solid, hull_of, voxelize},
 };
 use bevy::prelude::*;
 use freshet_hydro::{
     hull::{Hull, HullDrag, HullPoint},
-    load::{Fluid, Load, Motion, Pose, Surface},
+    load::{Fluid, Load, Motion, Pose},
     samples::SampleHull,
     voxels::{Drag, VoxelHull},
 };
@@ -22,14 +23,17 @@ pub(super) struct Form {
 }
 
 enum Model {
-    /// The hull itself, with room for its points.
-    Hull(Vec<HullPoint>),
+    /// The hull itself, with room for its points, and with more of them for water that bends.
+    Hull {
+        finer: Hull,
+        points: Vec<HullPoint>,
+    },
     Voxels(VoxelHull),
     Samples(SampleHull),
 }
 
 impl Form {
-    /// The hull of `solids` and what the settings make of it.
+    /// The hull of `solids`, of `most` triangles, and what `model` makes of it.
     pub fn new(
         solids: &[Solid],
         model: BuoyancyModel,
@@ -38,19 +42,20 @@ impl Form {
     ) -> Result<Self, String> {
         let hull = hull_of(solids, report).map_err(|error| error.to_string())?.simplified(most);
         let model = match model {
-            BuoyancyModel::Hull => Model::Hull(Vec::with_capacity(hull.points().len())),
+            BuoyancyModel::Hull => {
+                let finer = hull.clone().refined(LONGEST_EDGE * hull.length(), most);
+                Model::Hull { points: Vec::with_capacity(finer.points().len()), finer }
+            }
             BuoyancyModel::Voxels { per_axis } => {
                 let voxels = voxelize(solids, per_axis).and_then(|voxels| voxels.with_volume(hull.volume()));
                 Model::Voxels(voxels.map_err(|error| error.to_string())?)
             }
             BuoyancyModel::Samples { spacing } => Model::Samples(SampleHull::new(&hull, spacing)),
         };
-        let longest = LONGEST_EDGE * hull.length();
-        let hull = if matches!(model, Model::Hull(_)) { hull.refined(longest, most) } else { hull };
         Ok(Self { hull, model })
     }
 
-    /// What the water does to it; see [`Hull::load`].
+    /// What the water of `footprint` does to it; see [`Hull::load`].
     pub fn load(
         &mut self,
         pose: &Pose,
@@ -58,12 +63,17 @@ impl Form {
         motion: &Motion,
         fluid: &Fluid,
         drag: &HullDrag,
-        surface: impl FnMut(Vec2) -> Option<Surface>,
+        footprint: &Footprint,
     ) -> Load {
-        // A hull's coefficients hold for its faces; models without faces have the mean for the body.
-        let whole = Drag { damping: drag.radiation, coefficient: 0.5 * (drag.bluff + drag.fair) };
+        // A hull's coefficients hold for its faces; models without faces have the mean, and such a share of critical damping as a hull
+        // of that radiation comes to.
+        let whole = Drag { damping: 0.5 * drag.radiation, coefficient: 0.5 * (drag.bluff + drag.fair) };
+        let surface = |at| footprint.at(at);
         match &mut self.model {
-            Model::Hull(points) => self.hull.load(pose, centre, motion, fluid, drag, points, surface),
+            Model::Hull { finer, points } => {
+                let hull = if footprint.is_flat() { &self.hull } else { &*finer };
+                hull.load(pose, centre, motion, fluid, drag, points, surface)
+            }
             Model::Voxels(voxels) => voxels.load(pose, centre, motion, fluid, &whole, surface),
             Model::Samples(samples) => samples.load(pose, centre, motion, fluid, &whole, surface),
         }

@@ -6,7 +6,7 @@
 //!
 //! 1. hulls are built for new bodies, and rebuilt when a collider, a mesh or a scale has changed;
 //! 2. [`WaterSystems::Sample`]: the water is looked up on a lattice over each body's footprint;
-//! 3. [`WaterSystems::Force`]: pressure and drag are lent to the solver, for one step: after it they are taken back,
+//! 3. [`WaterSystems::Force`]: pressure, resistance and added mass ([`freshet_hydro::load`]) are lent to the solver, for one step: after it they are taken back,
 //!    so that they never add up and a game's own `ExternalForce` keeps its value and its effect.
 //!
 //! The forces go to the solver's body itself, not through the component `ExternalForce`: writing that one wakes the
@@ -18,7 +18,8 @@
 //! * With `substeps` above 1, and while `TimestepMode::Interpolated` catches up, a force holds for all of the step.
 //! * bevy_rapier 0.36 writes back a wrong `Transform` for bodies below a *rotated* parent (its `writeback_rigid_bodies`
 //!   scales after rotating); moved and scaled parents are right, and the solver's own pose always is.
-//! * The water does not yet feel the bodies.
+//! * Simulated water feels a body's drag (`WaterSimulation::push`), and not yet the room that it takes.
+//! * A closed mesh within another counts as filled with water: give the outer shell of a hollow body only.
 
 mod body;
 mod floating;

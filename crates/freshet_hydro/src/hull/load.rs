@@ -47,8 +47,13 @@ impl Hull {
         let speed = (around.velocity - motion.linear).length();
         let weight = fluid.density * fluid.gravity;
         let drag = FaceDrag::new(drag, fluid.density, fluid.gravity, self.length(), speed);
-        let sums = Arch::new().dispatch(Wetted { hull: self, points, faces: Faces::new(*motion, weight, drag) });
+        let sums = self.wetted(points, Faces::new(*motion, weight, drag));
         self.finish(&sums, pose, fluid, &around)
+    }
+
+    /// What all faces under water add up to. Not generic, so that it is compiled here, whoever calls it and however that is compiled.
+    fn wetted(&self, points: &[HullPoint], faces: Faces) -> Sums {
+        Arch::new().dispatch(Wetted { hull: self, points, faces })
     }
 
     /// Looks up the water at all points; nothing if there is none.

@@ -18,14 +18,16 @@ pub struct HullDrag {
     /// Pressure coefficient of faces that lean away from the water's way, ≥ 0, default 0.72: with that of squarely met ones it gives a
     /// ball 0.47 (Hoerner). Less for well-formed hulls.
     pub fair: f32,
-    /// Strength of the waves that a moving hull sends out, ≥ 0, default 0.25: a face near the surface that moves at v along its normal
-    /// is resisted by this · ρ √(g L) v per area, L being the edge of a cube of the hull's volume.
+    /// Strength of the waves that a moving hull sends out, ≥ 0, default 0.4: a face near the surface that moves at v along its normal
+    /// is resisted by this · ρ √(g L) v per area, L being the edge of a cube of the hull's volume. With it the heave of a
+    /// half-submerged ball dies out by 0.1 of critical damping (Havelock, *Waves due to a floating sphere making periodic heaving
+    /// oscillations*, Proc. R. Soc. A 231, 1955).
     pub radiation: f32,
 }
 
 impl Default for HullDrag {
     fn default() -> Self {
-        Self { friction: 1.0, bluff: 1.05, fair: 0.72, radiation: 0.25 }
+        Self { friction: 1.0, bluff: 1.05, fair: 0.72, radiation: 0.4 }
     }
 }
 
