@@ -127,7 +127,7 @@ fn drift(half: f32, density: f32, axes: LockedAxes) -> (f32, f32) {
     let cube = body(Collider::cuboid(half, half, half), Floating::with_density(density), 0.0);
     let cube = app.world_mut().spawn((cube, axes)).id();
     let mut highest = 0.0_f32;
-    for _ in 0..(20.0 * RATE) as u32 {
+    for _ in 0..(60.0 * RATE) as u32 {
         app.update();
         highest = highest.max(read::<Velocity>(&app, cube).linear.x);
     }
@@ -223,7 +223,7 @@ fn bodies_sleep_in_still_water_and_wake_with_it() {
     assert_near(read::<Velocity>(&app, ball).linear.x, 0.5, 0.05, "speed");
 
     app.world_mut().entity_mut(water).remove::<WaterFlow>();
-    run(&mut app, 60.0);
+    run(&mut app, 120.0);
     assert!(is_asleep(&mut app, ball), "{:?}", read::<Velocity>(&app, ball));
     app.world_mut().get_mut::<Transform>(water).unwrap().translation.y += 0.5;
     run(&mut app, 30.0);

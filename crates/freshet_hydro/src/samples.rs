@@ -53,7 +53,7 @@ impl SampleHull {
                 }
             }
         }
-        Self { points, volume: hull.volume(), shadow: 0.25 * area, length: hull.length() }
+        Self { points, volume: hull.volume(), shadow: 0.25 * hull.area(), length: hull.length() }
     }
 
     /// The points, m.

@@ -21,8 +21,9 @@ use std::{ops::RangeInclusive, sync::Arc};
 /// State of a floating body between systems.
 #[derive(Component, Default)]
 pub(crate) struct Body {
-    /// What the hull was built from.
+    /// What the hull was built from, and how.
     source: Source,
+    made: Option<(BuoyancyModel, usize)>,
     /// Solids of the body, for its bounding box.
     pub(super) solids: Vec<Solid>,
     /// The hull; none until built, or if the body has no volume.
@@ -220,21 +221,24 @@ pub(super) fn build_hulls(
             state.source = Source::None;
         }
         let source = Source::of(body, &colliders.colliders, mesh, transform.scale());
-        if source != state.source || floating.is_changed() {
+        let is_new = source != state.source;
+        if is_new || floating.is_changed() {
             let (model, most) = resolve_model(entity, &floating, &mut reported);
-            let mut report = |flaw: Flaw| reported.warn(entity, "Floating: a shape", flaw);
-            let Some(solids) = source.solids(meshes.as_deref(), &mut report) else {
-                // The mesh still loads. An empty source asks again in the next step.
-                state.source = Source::None;
-                continue;
-            };
-            state.source = source;
-            if let Err(problem) = state.build(solids, model, most, &mut report) {
-                reported.warn(entity, "Floating", problem);
+            if is_new || state.made != Some((model, most)) {
+                let mut report = |flaw: Flaw| reported.warn(entity, "Floating: a shape", flaw);
+                let Some(solids) = source.solids(meshes.as_deref(), &mut report) else {
+                    // The mesh still loads. An empty source asks again in the next step.
+                    state.source = Source::None;
+                    continue;
+                };
+                (state.source, state.made) = (source, Some((model, most)));
+                if let Err(problem) = state.build(solids, model, most, &mut report) {
+                    reported.warn(entity, "Floating", problem);
+                }
+                buoyancy.volume = state.form.as_ref().map_or(0.0, |form| form.hull.volume());
             }
             state.drag = resolve_drag(entity, &floating, &mut reported);
             state.mass = state.resolve_mass(entity, &floating, &mut reported);
-            buoyancy.volume = state.form.as_ref().map_or(0.0, |form| form.hull.volume());
         }
 
         // Also when a game has since given the body another mass: `Weight` decides.

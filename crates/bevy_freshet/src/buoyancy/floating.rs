@@ -34,7 +34,7 @@ pub struct Floating {
     pub bluff_drag: f32,
     /// Pressure coefficient of faces that it passes, 0…100, default 0.72. See [`HullDrag::fair`].
     pub fair_drag: f32,
-    /// How soon the body comes to rest at the surface, by the waves that it sends out, 0…10, default 0.4. See [`HullDrag::radiation`].
+    /// How soon the body comes to rest at the surface, by the waves that it sends out, 0…10, default 0.67. See [`HullDrag::radiation`].
     pub radiation: f32,
 }
 

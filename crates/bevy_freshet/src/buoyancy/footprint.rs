@@ -77,6 +77,9 @@ impl Footprint {
     /// Water at `place`, bilinear between the four places around it. Where some of them are dry the wet ones count,
     /// and nothing if they are the smaller part.
     pub(super) fn at(&self, place: Vec2) -> Option<Surface> {
+        if self.samples.is_empty() {
+            return None;
+        }
         let cells = (self.places - 1) as f32;
         let at =
             ((place - self.min) / self.size.max(Vec2::splat(f32::MIN_POSITIVE))).clamp(Vec2::ZERO, Vec2::ONE) * cells;

@@ -67,7 +67,7 @@ impl Form {
     ) -> Load {
         // A hull's coefficients hold for its faces; models without faces have the mean, and such a share of critical damping as a hull
         // of that radiation comes to.
-        let whole = Drag { damping: 0.5 * drag.radiation, coefficient: 0.5 * (drag.bluff + drag.fair) };
+        let whole = Drag { damping: 0.3 * drag.radiation, coefficient: 0.5 * (drag.bluff + drag.fair) };
         let surface = |at| footprint.at(at);
         match &mut self.model {
             Model::Hull { finer, points } => {

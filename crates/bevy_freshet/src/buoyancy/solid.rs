@@ -33,6 +33,9 @@ pub(super) enum Flaw {
     /// It is a triangle mesh that does not close; its convex hull is used.
     #[error("is a triangle mesh of which {0}; it floats as its convex hull")]
     Open(HullError),
+    /// Its surface holds no volume that could be found; it is left out.
+    #[error("is left out: {0}")]
+    Refused(HullError),
     /// It overlaps another one, and one of both is not convex.
     #[error("overlaps another, and not both are convex; what they have in common counts twice ({0} pairs)")]
     Overlap(usize),
@@ -127,6 +130,10 @@ impl Solid {
                 Hull::new(&points, &triangles)
             }
             T::TriMesh(mesh) => Hull::new(mesh.vertices(), mesh.indices()),
+            T::Voxels(voxels) => {
+                let (points, triangles) = voxels.to_trimesh();
+                Hull::new(&points, &triangles)
+            }
             _ => Err(HullError::NoTriangles),
         }?;
         hull.placed(self.pose.rotation, self.pose.translation)
@@ -147,15 +154,6 @@ impl Solid {
             TypedShape::RoundCone(round) => projected(&round.inner_shape, point) - round.border_radius,
             TypedShape::RoundConvexPolyhedron(round) => plane_distance(&round.inner_shape, point) - round.border_radius,
             _ => projected(&*self.shape, point),
-        }
-    }
-
-    /// Exact volume, m³, where Parry knows it: it leaves the border of round shapes out.
-    fn exact_volume(&self) -> Option<f32> {
-        use TypedShape as T;
-        match self.shape.as_typed_shape() {
-            T::RoundCuboid(_) | T::RoundCylinder(_) | T::RoundCone(_) | T::RoundConvexPolyhedron(_) => None,
-            _ => Some(self.shape.mass_properties(1.0).mass()),
         }
     }
 }
@@ -214,7 +212,8 @@ fn mean_curvature(hull: &Hull) -> f32 {
 
 /// The surface of the union of `solids`.
 pub(super) fn hull_of(solids: &[Solid], report: &mut impl FnMut(Flaw)) -> Result<Hull, HullError> {
-    let parts = solids.iter().map(Solid::hull).collect::<Result<Vec<_>, _>>()?;
+    let part = |solid: &Solid| solid.hull().inspect_err(|error| report(Flaw::Refused(*error))).ok();
+    let parts = solids.iter().filter_map(part).collect();
     let Union { hull, doubled } = Hull::union(parts)?;
     if doubled > 0 {
         report(Flaw::Overlap(doubled));
@@ -227,25 +226,12 @@ pub(super) fn bounds(solids: &[Solid], body: &Pose) -> Aabb {
     solids.iter().map(|solid| solid.aabb(body)).fold(Aabb::new_invalid(), |all, aabb| all.merged(&aabb))
 }
 
-/// Cuts the union of `solids` into voxels. Volumes are exact where Parry knows them; where solids overlap, the share
-/// that counts once is taken from the samples.
+/// Cuts the union of `solids` into voxels.
 pub(super) fn voxelize(solids: &[Solid], cells_per_axis: u32) -> Result<VoxelHull, voxels::HullError> {
     let bounds = bounds(solids, &Pose::IDENTITY);
-    let (mut in_any, mut in_each) = (0_u32, 0_u32);
-    let hull = VoxelHull::new([bounds.mins, bounds.maxs], cells_per_axis as usize, |point| {
-        let (inside, distance) = solids.iter().fold((0, f32::INFINITY), |(inside, nearest), solid| {
-            let distance = solid.distance(point);
-            (inside + u32::from(distance < 0.0), nearest.min(distance))
-        });
-        in_any += inside.min(1);
-        in_each += inside;
-        distance
-    })?;
-    let exact: Option<f32> = solids.iter().map(Solid::exact_volume).sum();
-    match exact {
-        Some(volume) if in_each > 0 => hull.with_volume(volume * in_any as f32 / in_each as f32),
-        _ => Ok(hull),
-    }
+    VoxelHull::new([bounds.mins, bounds.maxs], cells_per_axis as usize, |point| {
+        solids.iter().map(|solid| solid.distance(point)).fold(f32::INFINITY, f32::min)
+    })
 }
 
 #[cfg(test)]

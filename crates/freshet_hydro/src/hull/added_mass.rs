@@ -4,13 +4,13 @@
 //! it is turned. For ellipsoids both are known exactly (Lamb, *Hydrodynamics*, 6th ed. 1932, §§ 114–115), and a hull counts as the
 //! ellipsoid of its second moments. Bodies with edges move more than that, squarely cut prisms by about 0.18 ρ V (k of a cube is 0.68
 //! and not 0.5: DNV-RP-C205, *Environmental conditions and environmental loads*, table D-2): how much of it a hull gets is told by
-//! its volume, which for equal second moments is 0.886 of the ellipsoid's.
+//! its volume, which for equal second moments is 0.888 of the ellipsoid's.
 use glam::{Mat3, Vec3};
 
 /// What squarely cut edges add to the coefficient along each axis.
 const EDGES: f32 = 0.18;
 /// Volume of a box over that of the ellipsoid of its second moments.
-const BOX_SHARE: f32 = 0.887_2;
+const BOX_SHARE: f32 = 0.887_622;
 
 /// Added mass of a wholly submerged hull, in its own frame about its centroid, for water of density 1 kg/m³.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -17,14 +17,14 @@ pub(super) struct Faces {
     /// −1 for those that are to be taken away.
     signs: Lanes,
     motion: Motion,
-    /// ρ g, N/m³.
-    weight: f32,
+    /// Depth that is left out of the pressure, m: over a closed surface it adds nothing but rounding.
+    base: f32,
     drag: FaceDrag,
     sums: Sums,
 }
 
 impl Faces {
-    pub fn new(motion: Motion, weight: f32, drag: FaceDrag) -> Self {
+    pub fn new(motion: Motion, base: f32, drag: FaceDrag) -> Self {
         Self {
             count: 0,
             corners: [Vectors::ZERO; 3],
@@ -32,7 +32,7 @@ impl Faces {
             water: Vectors::ZERO,
             signs: Lanes::ZERO,
             motion,
-            weight,
+            base,
             drag,
             sums: Sums::ZERO,
         }
@@ -72,7 +72,7 @@ impl Faces {
         let third = Lanes::splat(1.0 / 3.0);
         let middle = (a + b + c) * third;
         let depth = da + db + dc;
-        self.sums.add_pressure(vector, [a, b, c], [da, db, dc], depth, self.weight);
+        self.sums.add_pressure(vector, [a, b, c], [da, db, dc].map(|depth| depth - Lanes::splat(self.base)));
         self.sums.add_waterplane(-vector.y, [a, b, c], middle);
 
         let area = vector.dot(vector).sqrt();
@@ -96,6 +96,7 @@ type Symmetric = [Lanes; 6];
 
 /// What faces add up to.
 pub(super) struct Sums {
+    /// Of the pressure, over ρ g.
     push: Vectors,
     push_torque: Vectors,
     /// Depth over the submerged volume, m⁴.
@@ -155,17 +156,11 @@ impl Sums {
         water: Vectors::ZERO,
     };
 
-    /// **F** = −ρ g (S/3) **A** at Σ p_i (d_i + S)/(4 S), and ∫ d dV = −∮ ½ d² n_y dA with ∫ d² dA = A (Σ d_i² + S²)/12.
+    /// **F**/(ρ g) = −(S/3) **A** at Σ p_i (d_i + S)/(4 S), and ∫ d dV = −∮ ½ d² n_y dA with ∫ d² dA = A (Σ d_i² + S²)/12.
     #[inline(always)]
-    fn add_pressure(
-        &mut self,
-        vector: Vectors,
-        [a, b, c]: [Vectors; 3],
-        [da, db, dc]: [Lanes; 3],
-        depth: Lanes,
-        weight: f32,
-    ) {
-        let push = vector * (depth * (-weight / 3.0));
+    fn add_pressure(&mut self, vector: Vectors, [a, b, c]: [Vectors; 3], [da, db, dc]: [Lanes; 3]) {
+        let depth = da + db + dc;
+        let push = vector * (depth * (-1.0 / 3.0));
         let weighted = a * (da + depth) + b * (db + depth) + c * (dc + depth);
         let centre = weighted * (Lanes::splat(0.25) / depth.at_least(1e-30));
         self.push += push;
@@ -205,21 +200,26 @@ impl Sums {
         self.stream_torque += scaled * met + middle.cross(water) * tangential;
     }
 
-    /// Depth integrated over the submerged volume, m⁴.
-    pub fn depths(&self) -> f32 {
-        self.depths.sum()
+    /// Force and torque of the pressure over ρ g, m³ and m⁴.
+    pub fn push(&self) -> (Vec3, Vec3) {
+        (self.push.sum(), self.push_torque.sum())
+    }
+
+    /// Depth integrated over the submerged volume, m⁴, if `base` (m) was left out of it.
+    pub fn depths(&self, base: f32) -> f32 {
+        self.depths.sum() + base * self.push.y.sum()
     }
 
     /// The load that they make, without added mass.
     pub fn load(&self, weight: f32) -> Load {
         let area = self.area.sum();
-        let push = Wrench { force: self.push.sum(), torque: self.push_torque.sum() };
+        let (force, torque) = self.push();
         let mut load = Load {
-            pressure: push,
+            pressure: Wrench { force, torque } * weight,
             stream: Wrench { force: self.stream.sum(), torque: self.stream_torque.sum() },
             resistance: self.resistance(),
             // The pressure's push is ρ g V upwards under any surface.
-            submerged_volume: (push.force.y / weight).max(0.0),
+            submerged_volume: force.y.max(0.0),
             wetted_area: area,
             water_velocity: self.water.sum() / area.max(1e-30),
             ..Load::default()
@@ -245,7 +245,8 @@ impl Sums {
     /// the hull is what the wet faces, seen from above, lack to a closed surface.
     fn add_stiffness(&self, load: &mut Load, weight: f32) {
         let area = self.plane.sum();
-        if area <= 0.0 {
+        // Wholly submerged hulls have none but what rounding leaves.
+        if area <= 1e-5 * self.area.sum() {
             return;
         }
         load.waterplane_area = area;

@@ -44,10 +44,10 @@ impl Hull {
         surface: impl FnMut(Vec2) -> Option<Surface>,
     ) -> Load {
         let Some(around) = self.look_up(pose, centre, points, surface) else { return Load::default() };
-        let speed = (around.velocity - motion.linear).length();
-        let weight = fluid.density * fluid.gravity;
+        let turning = 0.5 * self.length() * motion.angular.length();
+        let speed = (around.velocity - motion.linear).length().hypot(turning);
         let drag = FaceDrag::new(drag, fluid.density, fluid.gravity, self.length(), speed);
-        let sums = self.wetted(points, Faces::new(*motion, weight, drag));
+        let sums = self.wetted(points, Faces::new(*motion, around.base, drag));
         self.finish(&sums, pose, fluid, &around)
     }
 
@@ -67,23 +67,34 @@ impl Hull {
         let world_from_body = Mat3::from_quat(pose.rotation);
         // Relative to the centre of mass, so that a body a kilometre from the origin floats as precisely.
         let origin = pose.position - centre;
-        let mut around = Around::default();
+        let mut around = Around { least: Vec3::INFINITY, most: Vec3::NEG_INFINITY, ..Around::default() };
         let mut count = 0.0;
-        let mut deepest = 0.0_f32;
+        let (mut deepest, mut shallowest) = (0.0_f32, f32::INFINITY);
         points.clear();
         points.extend(self.points.iter().map(|point| {
             let arm = origin + world_from_body * *point;
             let Some(water) = surface(Vec2::new(centre.x + arm.x, centre.z + arm.z)) else {
+                // As far out of the water as the hull is long: it ends near the last point that has some.
+                shallowest = 0.0;
                 return HullPoint { arm, depth: -self.length(), velocity: Vec3::ZERO };
             };
             let height = water.height - centre.y;
             count += 1.0;
+            around.least = around.least.min(arm);
+            around.most = around.most.max(arm);
             around.height += height;
             around.velocity += water.velocity;
-            deepest = deepest.max(height - arm.y);
-            HullPoint { arm, depth: height - arm.y, velocity: water.velocity }
+            let depth = height - arm.y;
+            deepest = deepest.max(depth);
+            shallowest = shallowest.min(depth);
+            HullPoint { arm, depth, velocity: water.velocity }
         }));
-        (deepest > 0.0).then(|| Around { height: around.height / count, velocity: around.velocity / count })
+        (deepest > 0.0).then(|| Around {
+            height: around.height / count,
+            velocity: around.velocity / count,
+            base: shallowest.max(0.0),
+            ..around
+        })
     }
 
     fn finish(&self, sums: &Sums, pose: &Pose, fluid: &Fluid, around: &Around) -> Load {
@@ -93,17 +104,16 @@ impl Hull {
         if load.submerged_volume <= 1e-9 * self.volume {
             return Load::default();
         }
-        // The water that moves with the hull is around its submerged part.
-        let push = load.pressure;
-        let buoyancy = Vec3::new(
-            push.torque.z / push.force.y,
-            around.height - sums.depths() / load.submerged_volume,
-            -push.torque.x / push.force.y,
-        );
+        // The water that moves with the hull is around its submerged part: where the push acts, and as deep as its mean depth.
+        let (force, torque) = sums.push();
+        let y = around.height - sums.depths(around.base) / force.y;
+        let centre = Vec3::new((torque.z + y * force.x) / force.y, y, (y * force.z - torque.x) / force.y);
+        // Where some of the water is missing the forces do not balance: never further out than the hull reaches.
+        let centre = centre.clamp(around.least, around.most);
         let share = load.submerged_volume / self.volume * fluid.density;
         let world_from_body = Mat3::from_quat(pose.rotation);
         let turned = |matrix: Mat3| world_from_body * matrix * world_from_body.transpose() * share;
-        load.added_mass.add_at(turned(self.added_mass.linear), buoyancy);
+        load.added_mass.add_at(turned(self.added_mass.linear), centre);
         load.added_mass.angular += turned(self.added_mass.angular);
         load
     }
@@ -116,6 +126,11 @@ struct Around {
     height: f32,
     /// Mean velocity, m/s.
     velocity: Vec3,
+    /// Depth of the highest point, m; 0 if any is dry.
+    base: f32,
+    /// The box of the points that have water, from the centre of mass, m.
+    least: Vec3,
+    most: Vec3,
 }
 
 /// The triangles of a hull, cut by the surface; compiled once for every set of vector instructions.
@@ -144,32 +159,27 @@ impl Wetted<'_> {
     /// Adds what is under water of a triangle.
     #[inline(always)]
     fn add(&mut self, [a, b, c]: [&HullPoint; 3], sign: f32) {
-        let wet = [a, b, c].map(|corner| corner.depth > 0.0);
-        match wet {
-            [false, false, false] => {}
-            [true, true, true] => self.faces.push([a, b, c], sign),
-            [true, false, false] => self.add_tip(a, b, c, sign),
-            [false, true, false] => self.add_tip(b, c, a, sign),
-            [false, false, true] => self.add_tip(c, a, b, sign),
-            [true, true, false] => self.add_rest(a, b, c, sign),
-            [false, true, true] => self.add_rest(b, c, a, sign),
-            [true, false, true] => self.add_rest(c, a, b, sign),
+        // Turned so that one that is different from the other two comes first.
+        let [a, b, c] = match [a, b, c].map(|corner| corner.depth > 0.0) {
+            [false, false, false] => return,
+            [true, true, true] => return self.faces.push([a, b, c], sign),
+            [true, false, false] | [false, true, true] => [a, b, c],
+            [false, true, false] | [true, false, true] => [b, c, a],
+            [false, false, true] | [true, true, false] => [c, a, b],
+        };
+        let pieces = if a.depth > 0.0 { [[*a, cut(a, b), cut(a, c)]; 2] } else { rest(a, b, c) };
+        // A tip is one piece, and what is left without one are two.
+        let count = if a.depth > 0.0 { 1 } else { 2 };
+        for [p, q, r] in &pieces[..count] {
+            self.faces.push([p, q, r], sign);
         }
     }
+}
 
-    /// Of a triangle only `a` is wet.
-    #[inline(never)]
-    fn add_tip(&mut self, a: &HullPoint, b: &HullPoint, c: &HullPoint, sign: f32) {
-        self.faces.push([a, &cut(a, b), &cut(a, c)], sign);
-    }
-
-    /// Of a triangle only `c` is dry.
-    #[inline(never)]
-    fn add_rest(&mut self, a: &HullPoint, b: &HullPoint, c: &HullPoint, sign: f32) {
-        let (beyond_b, beyond_a) = (cut(b, c), cut(a, c));
-        self.faces.push([a, b, &beyond_b], sign);
-        self.faces.push([a, &beyond_b, &beyond_a], sign);
-    }
+/// What is under water of a triangle of which only `a` is dry.
+fn rest(a: &HullPoint, b: &HullPoint, c: &HullPoint) -> [[HullPoint; 3]; 2] {
+    let (before, after) = (cut(b, a), cut(c, a));
+    [[before, *b, *c], [before, *c, after]]
 }
 
 /// Where the edge from a wet to a dry point meets the surface.

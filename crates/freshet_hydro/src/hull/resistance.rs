@@ -7,6 +7,9 @@ pub const VISCOSITY: f32 = 1.0e-6;
 /// Below this Reynolds number skin friction follows a laminar layer, above it the line of ships.
 const LAMINAR: f32 = 2e4;
 
+/// Share of the waves of a face that moves up and down which one has that moves along the surface.
+const SURGE: f32 = 0.15;
+
 /// How strongly water resists a hull.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HullDrag {
@@ -18,8 +21,8 @@ pub struct HullDrag {
     /// Pressure coefficient of faces that lean away from the water's way, ≥ 0, default 0.72: with that of squarely met ones it gives a
     /// ball 0.47 (Hoerner). Less for well-formed hulls.
     pub fair: f32,
-    /// Strength of the waves that a moving hull sends out, ≥ 0, default 0.4: a face near the surface that moves at v along its normal
-    /// is resisted by this · ρ √(g L) v per area, L being the edge of a cube of the hull's volume. With it the heave of a
+    /// Strength of the waves that a moving hull sends out, ≥ 0, default 0.67: a level face near the surface that moves up or down at
+    /// v is resisted by this · ρ √(g L) v per area, L being the edge of a cube of the hull's volume, and an upright one by 0.15 of it. With it the heave of a
     /// half-submerged ball dies out by 0.1 of critical damping (Havelock, *Waves due to a floating sphere making periodic heaving
     /// oscillations*, Proc. R. Soc. A 231, 1955).
     pub radiation: f32,
@@ -27,7 +30,7 @@ pub struct HullDrag {
 
 impl Default for HullDrag {
     fn default() -> Self {
-        Self { friction: 1.0, bluff: 1.05, fair: 0.72, radiation: 0.4 }
+        Self { friction: 1.0, bluff: 1.05, fair: 0.72, radiation: 0.67 }
     }
 }
 
@@ -79,7 +82,9 @@ impl FaceDrag {
         let one = Lanes::splat(1.0);
         let fading = one + x * (one + x * (Lanes::splat(0.5) + x * (1.0 / 6.0)));
         let tangential = square.sqrt() * self.friction;
-        [tangential, pressure + Lanes::splat(self.radiation) / fading - tangential]
+        // Faces that push water up and down send waves out; those that part it hardly do at low speed.
+        let heaving = normal.y * normal.y * (1.0 - SURGE) + Lanes::splat(SURGE);
+        [tangential, pressure + heaving * self.radiation / fading - tangential]
     }
 }
 

@@ -106,12 +106,12 @@ pub struct Load {
     pub stream: Wrench,
     /// Resistance to the body's own motion: force per velocity.
     pub resistance: Spatial,
-    /// Mass of water that has to be moved with the body.
+    /// Mass of water that has to be moved with the body; none for models that do not know it.
     pub added_mass: Spatial,
     /// How much of the added mass has come to the body since the step before, 0…1: that water is at rest in the stream, and is set in
     /// motion at once. 0 for a body that rises out of the water.
     pub entering: f32,
-    /// Change of the pressure with the body's place: force per displacement.
+    /// Change of the pressure with the body's place: force per displacement; none for models that do not know it.
     pub stiffness: Spatial,
     /// Volume under water, in m³.
     pub submerged_volume: f32,

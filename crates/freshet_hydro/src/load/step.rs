@@ -12,7 +12,7 @@ pub struct Inertia {
 }
 
 impl Load {
-    /// The constant force and torque that stand for the water during the next `dt` seconds.
+    /// The constant force and torque that stand for the water during the next `dt` seconds, more than 0.
     ///
     /// Resistance acts at the velocity that the body will have at the end of the step (linearly implicit Euler), so that it can slow a
     /// body down but never turn it around, however light the body and however long the step. Added mass A makes the body as heavy as it
