@@ -19,8 +19,12 @@ use freshet_hydro::load::{Fluid, Inertia, Load, Motion, Pose, Wrench};
 /// place then. Rapier's own threshold of 0.05 m/s would freeze what drifts in a slow current, or still bobs by a centimetre.
 const RESTING_SPEED: f32 = 1e-3;
 
-/// The same for the speed at which its ends turn. A ball may spin for long: only its skin resists that.
+/// The same for the speed at which its ends turn, if the water rights it, or if it is ten times as fast: a ball may spin slowly for long,
+/// as only its skin resists that.
 const RESTING_TURN: f32 = 5e-3;
+
+/// Torque of the water, as a share of weight times length, from which on it rights a body.
+const RIGHTING: f32 = 1e-4;
 
 /// Change of the water's force, as a share of the body's weight, that wakes it: 2 mm of level under a crate of 20 cm.
 const WAKING_SHARE: f32 = 0.01;
@@ -103,10 +107,14 @@ fn force(load: &Load, body: &RigidBody, gravity: Vec3, dt: f32) -> Wrench {
     if wrench.is_finite() { wrench } else { Wrench::ZERO }
 }
 
-/// Whether `body`, of this length (m), moves or turns too fast to go to sleep.
-fn is_moving(body: &RigidBody, length: f32, gravity: f32) -> bool {
+/// Whether `body`, of this length (m), moves or turns too fast to go to sleep under this torque of the water (N·m).
+fn is_moving(body: &RigidBody, length: f32, gravity: f32, torque: f32) -> bool {
     let speed = (gravity * length).sqrt();
-    body.linvel().length() > RESTING_SPEED * speed || body.angvel().length() * length > RESTING_TURN * speed
+    let turn = body.angvel().length() * length;
+    let is_righted = torque > RIGHTING * body.mass() * gravity * length;
+    body.linvel().length() > RESTING_SPEED * speed
+        || turn > 10.0 * RESTING_TURN * speed
+        || is_righted && turn > RESTING_TURN * speed
 }
 
 /// Computes the forces on all bodies and lends them to the solver; wakes sleepers whose water has changed.
@@ -143,7 +151,8 @@ pub(super) fn lend_forces(
         });
 
         let wake = body.is_sleeping()
-            || (load.submerged_volume > 0.0 && is_moving(body, state.length(), config.gravity.length()));
+            || (load.submerged_volume > 0.0
+                && is_moving(body, state.length(), config.gravity.length(), wrench.torque.length()));
         if !wake && wrench == Wrench::ZERO {
             continue;
         }
