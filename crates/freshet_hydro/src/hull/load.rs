@@ -93,6 +93,7 @@ impl Hull {
             height: around.height / count,
             velocity: around.velocity / count,
             base: shallowest.max(0.0),
+            deepest,
             ..around
         })
     }
@@ -110,6 +111,11 @@ impl Hull {
         let centre = Vec3::new((torque.z + y * force.x) / force.y, y, (y * force.z - torque.x) / force.y);
         // Where some of the water is missing the forces do not balance: never further out than the hull reaches.
         let centre = centre.clamp(around.least, around.most);
+        // A hull that is wholly submerged, or nearly, loses its push as well when it comes out, however little its waterplane says now.
+        let secant = load.pressure.force.y / around.deepest - load.stiffness.linear.y_axis.y;
+        if secant > 0.0 {
+            load.stiffness.add_along(secant, Vec3::Y, centre);
+        }
         let share = load.submerged_volume / self.volume * fluid.density;
         let world_from_body = Mat3::from_quat(pose.rotation);
         let turned = |matrix: Mat3| world_from_body * matrix * world_from_body.transpose() * share;
@@ -128,6 +134,8 @@ struct Around {
     velocity: Vec3,
     /// Depth of the highest point, m; 0 if any is dry.
     base: f32,
+    /// Depth of the lowest point, m.
+    deepest: f32,
     /// The box of the points that have water, from the centre of mass, m.
     least: Vec3,
     most: Vec3,
