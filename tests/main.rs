@@ -7,6 +7,8 @@ mod stage;
 #[cfg(feature = "rapier")]
 mod buoyancy;
 #[cfg(feature = "rapier")]
+mod buoyancy_cost;
+#[cfg(feature = "rapier")]
 mod endurance;
 mod features;
 mod fields;
