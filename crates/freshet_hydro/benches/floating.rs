@@ -1,7 +1,7 @@
 //! How exact the models of floating bodies are, and what they cost. `cargo bench -p freshet_hydro --bench floating`.
 use freshet_hydro::{
     hull::{Hull, HullDrag, HullPoint},
-    load::{Fluid, Load, Motion, Pose, Surface},
+    load::{BodyState, Fluid, Load, Motion, Pose, Surface},
     samples::SampleHull,
     voxels::{Drag, VoxelHull},
     waves::{GRAVITY, WATER_DENSITY},
@@ -27,12 +27,13 @@ enum Model {
 
 impl Model {
     fn load(&mut self, pose: &Pose) -> Load {
-        let (motion, fluid) = (Motion { linear: vec3(0.3, -0.2, 0.1), angular: vec3(0.1, 0.2, 0.0) }, Fluid::default());
-        let (centre, surface) = (pose.position, |_| Some(STILL));
+        let motion = Motion { linear: vec3(0.3, -0.2, 0.1), angular: vec3(0.1, 0.2, 0.0) };
+        let body = BodyState { pose: *pose, centre: pose.position, motion };
+        let (fluid, surface) = (Fluid::default(), |_| Some(STILL));
         match self {
-            Self::Hull(hull, points) => hull.load(pose, centre, &motion, &fluid, &HullDrag::default(), points, surface),
-            Self::Voxels(voxels) => voxels.load(pose, centre, &motion, &fluid, &Drag::default(), surface),
-            Self::Samples(samples) => samples.load(pose, centre, &motion, &fluid, &Drag::default(), surface),
+            Self::Hull(hull, points) => hull.load(&body, &fluid, &HullDrag::default(), points, surface),
+            Self::Voxels(voxels) => voxels.load(&body, &fluid, &Drag::default(), surface),
+            Self::Samples(samples) => samples.load(&body, &fluid, &Drag::default(), surface),
         }
     }
 }

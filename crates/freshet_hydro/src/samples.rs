@@ -6,7 +6,7 @@
 //! [`voxels`](crate::voxels) can be compared with it.
 use crate::{
     hull::Hull,
-    load::{Fluid, Load, Motion, Pose, Surface},
+    load::{BodyState, Fluid, Load, Surface},
     voxels::Drag,
 };
 use glam::{Mat3, Vec2, Vec3};
@@ -61,18 +61,16 @@ impl SampleHull {
         &self.points
     }
 
-    /// What the water does to the body at `pose` with `motion`, about the centre of mass `centre` (world, m).
+    /// What the water does to `body`, about its centre of mass.
     pub fn load(
         &self,
-        pose: &Pose,
-        centre: Vec3,
-        motion: &Motion,
+        body: &BodyState,
         fluid: &Fluid,
         drag: &Drag,
         mut surface: impl FnMut(Vec2) -> Option<Surface>,
     ) -> Load {
-        let world_from_body = Mat3::from_quat(pose.rotation);
-        let origin = pose.position - centre;
+        let world_from_body = body.world_from_body();
+        let (origin, centre) = (body.origin(), body.centre);
         let volume = self.volume / self.points.len().max(1) as f32;
         let linear = fluid.density * 2.0 * drag.damping * (fluid.gravity / self.length).sqrt() * volume;
         let quadratic = 0.5 * fluid.density * drag.coefficient * self.shadow * volume / self.volume;
@@ -84,8 +82,8 @@ impl SampleHull {
                 continue;
             }
             load.pressure.add_at(Vec3::Y * (fluid.density * fluid.gravity * volume), arm);
-            let relative = water.velocity - motion.linear - motion.angular.cross(arm);
-            let resistance = Mat3::from_diagonal(Vec3::splat(linear + quadratic * relative.length()));
+            let speed = body.passed_by(water.velocity, arm).length();
+            let resistance = Mat3::from_diagonal(Vec3::splat(linear + quadratic * speed));
             load.resistance.add_at(resistance, arm);
             load.stream.add_at(resistance * water.velocity, arm);
             load.submerged_volume += volume;
@@ -101,4 +99,32 @@ impl SampleHull {
 /// A point of the unit square; any run of them lies evenly (Roberts' R₂ sequence: multiples of 1/φ and 1/φ², φ³ = φ + 1).
 fn quasi_random(k: usize) -> [f32; 2] {
     [0.754_877_666_246_693, 0.569_840_290_998_053].map(|step: f64| (0.5 + step * k as f64).fract() as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        load::Pose,
+        waves::{GRAVITY, WATER_DENSITY},
+    };
+
+    #[test]
+    fn points_keep_their_distance_and_share_the_volume() {
+        let hull = Hull::cuboid(Vec3::new(1.0, 0.3, 0.5)).expect("a box");
+        let spacing = 0.2;
+        let samples = SampleHull::new(&hull, spacing);
+        assert!(samples.points().len() > 60, "{} points", samples.points().len());
+        for (k, point) in samples.points().iter().enumerate() {
+            assert!(samples.points()[..k].iter().all(|other| other.distance(*point) >= spacing));
+            let off = (point.abs() / Vec3::new(1.0, 0.3, 0.5)).max_element() - 1.0;
+            assert!(off.abs() < 1e-5, "{point} is on the surface");
+        }
+        let pose = Pose { position: Vec3::NEG_Y * 5.0, ..Pose::default() };
+        let body = BodyState { pose, centre: pose.position, ..BodyState::default() };
+        let load = samples.load(&body, &Fluid::default(), &Drag::default(), |_| Some(Surface::default()));
+        let push = WATER_DENSITY * GRAVITY * hull.volume();
+        assert!((load.pressure.force.y / push - 1.0).abs() < 1e-4 && load.pressure.force.x == 0.0);
+        assert_eq!(SampleHull::new(&hull, f32::NAN), SampleHull::new(&hull, 0.2 * hull.length()));
+    }
 }

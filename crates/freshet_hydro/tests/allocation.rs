@@ -4,37 +4,33 @@
 use freshet_hydro::{
     grid::Grid,
     hull::{Hull, HullDrag},
-    load::{Fluid, Motion, Pose, Surface},
+    load::{BodyState, Fluid, Pose, Surface},
     shallow_water::{DomainSide, Edge, EdgePart, PointSource, Series, ShallowWater},
 };
 use glam::{Quat, UVec2, Vec2, Vec3};
 use std::{
     alloc::{GlobalAlloc, Layout, System},
-    sync::{
-        Mutex,
-        atomic::{AtomicUsize, Ordering},
-    },
+    cell::Cell,
 };
-
-/// The count is of the whole binary: its tests take turns.
-static TURN: Mutex<()> = Mutex::new(());
 
 /// The system's allocator, counting.
 struct Counting;
 
-/// How often memory was asked for.
-static COUNT: AtomicUsize = AtomicUsize::new(0);
+thread_local! {
+    /// How often this thread asked for memory: the test harness has threads of its own.
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
 
 // SAFETY: every call goes to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.fetch_add(1, Ordering::Relaxed);
+        COUNT.set(COUNT.get() + 1);
         // SAFETY: as the caller promised.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        COUNT.fetch_add(1, Ordering::Relaxed);
+        COUNT.set(COUNT.get() + 1);
         // SAFETY: as the caller promised.
         unsafe { System.realloc(memory, layout, size) }
     }
@@ -72,14 +68,13 @@ fn water() -> ShallowWater {
 /// After the first steps, a hundred more ask for no memory.
 #[test]
 fn a_step_takes_no_memory() {
-    let _turn = TURN.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let taken = pool.install(|| {
         let mut water = water();
         water.advance(1e9, 20);
-        let before = COUNT.load(Ordering::Relaxed);
+        let before = COUNT.get();
         let advance = water.advance(1e9, 100);
-        let taken = COUNT.load(Ordering::Relaxed) - before;
+        let taken = COUNT.get() - before;
         assert_eq!(advance.steps, 100);
         taken
     });
@@ -90,20 +85,19 @@ fn a_step_takes_no_memory() {
 /// A hull that bobs and turns asks for memory in its first step only.
 #[test]
 fn a_load_takes_no_memory() {
-    let _turn = TURN.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let hull = Hull::capsule(0.5, 0.3).expect("a capsule");
     let mut points = Vec::new();
     let mut load = |k: u16| {
         let angle = 0.1 * f32::from(k);
         let pose = Pose { position: Vec3::Y * (0.4 * angle.sin()), rotation: Quat::from_rotation_z(angle) };
         let surface = |place: Vec2| Some(Surface { height: 0.1 * place.x, ..Surface::default() });
-        let (motion, fluid, drag) = (Motion::default(), Fluid::default(), HullDrag::default());
-        hull.load(&pose, pose.position, &motion, &fluid, &drag, &mut points, surface).submerged_volume
+        let body = BodyState { pose, centre: pose.position, ..BodyState::default() };
+        hull.load(&body, &Fluid::default(), &HullDrag::default(), &mut points, surface).submerged_volume
     };
     load(0);
-    let before = COUNT.load(Ordering::Relaxed);
+    let before = COUNT.get();
     let volume: f32 = (1..100).map(load).sum();
-    let taken = COUNT.load(Ordering::Relaxed) - before;
+    let taken = COUNT.get() - before;
     println!("99 loads asked {taken} times for memory, {volume} m³ in all");
     assert_eq!(taken, 0);
 }

@@ -1,7 +1,7 @@
 //! Hulls against Archimedes and naval architecture, and motion against the formulas of falling, bobbing and drifting bodies.
 use freshet_hydro::{
-    hull::{Hull, HullDrag, HullPoint, friction_coefficient},
-    load::{Fluid, Inertia, Load, Motion, Pose, Surface, Wrench},
+    hull::{Hull, HullDrag, HullPoint, VISCOSITY, friction_coefficient},
+    load::{BodyState, Fluid, Inertia, Load, Motion, Pose, Surface, Wrench},
     waves::{GRAVITY, WATER_DENSITY},
 };
 use glam::{DVec3, EulerRot, Mat3, Quat, Vec2, Vec3, vec2, vec3};
@@ -57,9 +57,9 @@ impl Body {
     }
 
     fn load(&mut self, water: Surface) -> Load {
-        let pose = self.pose();
+        let state = BodyState { pose: self.pose(), centre: self.centre, motion: self.motion };
         let at = |place: Vec2| Some(Surface { height: water.height + water.slope.dot(place), ..water });
-        self.hull.load(&pose, self.centre, &self.motion, &Fluid::default(), &self.drag, &mut self.points, at)
+        self.hull.load(&state, &Fluid::default(), &self.drag, &mut self.points, at)
     }
 
     /// A step as a rigid-body solver takes it: velocity first, then place.
@@ -341,7 +341,7 @@ fn a_towed_plank_is_resisted_as_its_formula_says() {
         let resistance = -(load.stream + load.resistance.times(&body.motion) * -1.0).force.z;
         let sides = 8.0 * half.z * (half.x + half.y);
         let length = body.hull.length();
-        let friction = 0.5 * WATER_DENSITY * friction_coefficient(speed * length / 1e-6) * sides * speed * speed;
+        let friction = 0.5 * WATER_DENSITY * friction_coefficient(speed * length / VISCOSITY) * sides * speed * speed;
         let form = 0.5 * WATER_DENSITY * 1.05 * 4.0 * half.x * half.y * speed * speed;
         println!("{speed} m/s: {resistance:.3} N, friction {friction:.3} N and form {form:.3} N");
         assert!((resistance / (friction + form) - 1.0).abs() < 1e-3);
@@ -444,5 +444,77 @@ fn light_things_do_not_jitter() {
         let jitter = (sum / 60.0).sqrt();
         println!("{name}: {jitter:.2e} m/s RMS after 10 s");
         assert!(jitter < 1e-3, "{name}: {jitter}");
+    }
+}
+
+/// Logarithmic decrement of a half-submerged ball that bobs by a millimetre: as a share of critical damping.
+#[test]
+fn the_heave_of_a_ball_dies_out_by_its_radiation() {
+    let mut body = Body::new(Hull::ball(0.5).expect("a hull"), 0.5 * WATER_DENSITY, 0.001);
+    body.drag = HullDrag { radiation: HullDrag::default().radiation, ..SLICK };
+    let mut crests = Vec::new();
+    let [mut before, mut last] = [0.0, body.centre.y];
+    for _ in 0..1200 {
+        body.submerged = 1.0;
+        body.step(STILL, 1.0 / 120.0);
+        if last > before && last > body.centre.y {
+            crests.push(last);
+        }
+        (before, last) = (last, body.centre.y);
+    }
+    let decrement = (crests[0] / crests[2]).ln() / 2.0;
+    let share = decrement / (4.0 * PI * PI + decrement * decrement).sqrt();
+    println!("heave of a ball: {share:.4} of critical damping");
+    assert!((0.05..0.2).contains(&share), "{share}");
+}
+
+/// A ball that spins has nothing but its skin to resist it: ∫ ½ ρ C_f |ω × r|² r sin θ dA = ½ ρ C_f ω² π² · ¾ R⁵.
+#[test]
+fn a_spinning_ball_is_resisted_by_its_skin() {
+    let (radius, turn) = (0.3_f32, 2.0_f32);
+    let mut body = Body::new(Hull::ball(radius).expect("a hull"), 900.0, -20.0);
+    body.motion.angular = Vec3::Y * turn;
+    let load = body.load(STILL);
+    let torque = load.resistance.times(&body.motion).torque;
+    let speed = 0.5 * body.hull.length() * turn;
+    let coefficient = friction_coefficient(speed * body.hull.length() / VISCOSITY);
+    let skin = 0.5 * WATER_DENSITY * coefficient * turn * turn * 0.75 * PI * PI * radius.powi(5);
+    println!("a ball that spins: {} N m, {skin} N m by its skin", torque.y);
+    assert!((torque.y / skin - 1.0).abs() < 0.1 && torque.x.abs() + torque.z.abs() < 0.01 * torque.y);
+}
+
+/// Without gravity nothing floats, and yet the water is there.
+#[test]
+fn water_resists_without_gravity() {
+    let body = Body::new(Hull::ball(0.5).expect("a hull"), 500.0, -2.0);
+    let motion = Motion { linear: Vec3::X, angular: Vec3::ZERO };
+    let state = BodyState { pose: body.pose(), centre: body.centre, motion };
+    let fluid = Fluid { gravity: 0.0, ..Fluid::default() };
+    let load = body.hull.load(&state, &fluid, &body.drag, &mut Vec::new(), |_| Some(STILL));
+    assert_eq!(load.pressure.force, Vec3::ZERO);
+    assert!((load.submerged_volume / body.hull.volume() - 1.0).abs() < 1e-5);
+    let force = load.resistance.times(&motion).force.x;
+    let drag = 0.5 * WATER_DENSITY * 0.47 * PI * 0.25;
+    assert!((force / drag - 1.0).abs() < 0.05, "{force} {drag}");
+}
+
+/// Where some of a hull's points have no water the forces are finite, and what acts there acts within the hull.
+#[test]
+fn a_hull_half_over_a_shore_is_pushed_within_itself() {
+    for (name, hull) in shapes() {
+        let mut body = Body::new(hull, 500.0, 0.0);
+        for k in 0..40 {
+            body.rotation = Quat::from_euler(EulerRot::YXZ, 0.3 * k as f32, 0.2 * k as f32, 0.5 * k as f32);
+            let shore = 0.05 * k as f32 - 1.0;
+            let state = BodyState { pose: body.pose(), centre: body.centre, motion: body.motion };
+            let water = |place: Vec2| (place.x < shore).then_some(STILL);
+            let load = body.hull.load(&state, &Fluid::default(), &body.drag, &mut body.points, water);
+            let mass = load.added_mass;
+            let reach = body.hull.points().iter().map(|p| p.distance(body.hull.centroid())).fold(0.0, f32::max);
+            let most = mass.linear.x_axis.x.max(mass.linear.y_axis.y).max(mass.linear.z_axis.z);
+            assert!(load.pressure.is_finite() && mass.angular.is_finite(), "{name} {k}");
+            let turned = mass.angular.x_axis.x.max(mass.angular.y_axis.y).max(mass.angular.z_axis.z);
+            assert!(turned <= 7.0 * most * reach * reach, "{name} {k}: {turned} {most}");
+        }
     }
 }

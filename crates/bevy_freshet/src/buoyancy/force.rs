@@ -13,7 +13,7 @@ use bevy_rapier3d::{
     prelude::RapierRigidBodyHandle,
     rapier::prelude::RigidBody,
 };
-use freshet_hydro::load::{Fluid, Inertia, Load, Motion, Pose, Wrench};
+use freshet_hydro::load::{BodyState, Fluid, Inertia, Load, Motion, Pose, Wrench};
 
 /// Share of √(g L), L being the length of a body, above which its speed keeps it from sleep in the water: it lies within 10⁻³ L of its
 /// place then. Rapier's own threshold of 0.05 m/s would freeze what drifts in a slow current, or still bobs by a centimetre.
@@ -77,10 +77,13 @@ fn load(state: &mut Body, body: &RigidBody, gravity: Vec3) -> Load {
     if footprint.is_dry() {
         return Load::default();
     }
-    let pose = Pose { position: body.translation(), rotation: *body.rotation() };
     let fluid = Fluid { gravity: (-gravity.y).max(0.0), ..Fluid::default() };
-    let centre = body.center_of_mass();
-    let mut load = form.load(&pose, centre, &motion(body), &fluid, drag, footprint);
+    let at = BodyState {
+        pose: Pose { position: body.translation(), rotation: *body.rotation() },
+        centre: body.center_of_mass(),
+        motion: motion(body),
+    };
+    let mut load = form.load(&at, &fluid, drag, footprint);
     let share = load.submerged_volume / form.hull.volume();
     *submerged = Some(share);
     load.entering = before.filter(|before| share > *before).map_or(0.0, |before| 1.0 - before / share);

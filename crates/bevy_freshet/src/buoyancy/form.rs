@@ -4,16 +4,18 @@ use super::{
     footprint::Footprint,
     solid::{Flaw, Solid, hull_of, voxelize},
 };
-use bevy::prelude::*;
 use freshet_hydro::{
     hull::{Hull, HullDrag, HullPoint},
-    load::{Fluid, Load, Motion, Pose},
+    load::{BodyState, Fluid, Load},
     samples::SampleHull,
     voxels::{Drag, VoxelHull},
 };
 
 /// Share of a hull's length that its edges have at most, so that waves as long as the hull bend the waterline.
 const LONGEST_EDGE: f32 = 0.5;
+
+/// Share of critical damping by which a ball of radiation 1 stops heaving, for models without faces: 0.114/0.67.
+const DAMPING: f32 = 0.17;
 
 /// A hull, and what its model makes of it.
 pub(super) struct Form {
@@ -56,26 +58,17 @@ impl Form {
     }
 
     /// What the water of `footprint` does to it; see [`Hull::load`].
-    pub fn load(
-        &mut self,
-        pose: &Pose,
-        centre: Vec3,
-        motion: &Motion,
-        fluid: &Fluid,
-        drag: &HullDrag,
-        footprint: &Footprint,
-    ) -> Load {
-        // A hull's coefficients hold for its faces; models without faces have the mean, and such a share of critical damping as a hull
-        // of that radiation comes to.
-        let whole = Drag { damping: 0.3 * drag.radiation, coefficient: 0.5 * (drag.bluff + drag.fair) };
+    pub fn load(&mut self, body: &BodyState, fluid: &Fluid, drag: &HullDrag, footprint: &Footprint) -> Load {
+        // A hull's coefficients hold for its faces; models without faces have the mean of both.
+        let whole = Drag { damping: DAMPING * drag.radiation, coefficient: 0.5 * (drag.bluff + drag.fair) };
         let surface = |at| footprint.at(at);
         match &mut self.model {
             Model::Hull { finer, points } => {
                 let hull = if footprint.is_flat() { &self.hull } else { &*finer };
-                hull.load(pose, centre, motion, fluid, drag, points, surface)
+                hull.load(body, fluid, drag, points, surface)
             }
-            Model::Voxels(voxels) => voxels.load(pose, centre, motion, fluid, &whole, surface),
-            Model::Samples(samples) => samples.load(pose, centre, motion, fluid, &whole, surface),
+            Model::Voxels(voxels) => voxels.load(body, fluid, &whole, surface),
+            Model::Samples(samples) => samples.load(body, fluid, &whole, surface),
         }
     }
 }

@@ -13,7 +13,7 @@ use super::{
     faces::{Faces, Sums},
     resistance::FaceDrag,
 };
-use crate::load::{Fluid, Load, Motion, Pose, Surface};
+use crate::load::{BodyState, Fluid, Load, Surface};
 use glam::{Mat3, Vec2, Vec3};
 use pulp::{Arch, Simd, WithSimd};
 
@@ -29,26 +29,24 @@ pub struct HullPoint {
 }
 
 impl Hull {
-    /// What the water does to the hull at `pose` with `motion`, about the centre of mass `centre` (world, m).
+    /// What the water does to the hull of `body`, about its centre of mass.
     ///
     /// `surface` gives the water at a world (x, z), or `None` where there is none. `points` is room that is used from step to step, so
     /// that none is allocated.
     pub fn load(
         &self,
-        pose: &Pose,
-        centre: Vec3,
-        motion: &Motion,
+        body: &BodyState,
         fluid: &Fluid,
         drag: &HullDrag,
         points: &mut Vec<HullPoint>,
         surface: impl FnMut(Vec2) -> Option<Surface>,
     ) -> Load {
-        let Some(around) = self.look_up(pose, centre, points, surface) else { return Load::default() };
-        let turning = 0.5 * self.length() * motion.angular.length();
-        let speed = (around.velocity - motion.linear).length().hypot(turning);
+        let Some(around) = self.look_up(body, points, surface) else { return Load::default() };
+        let turning = 0.5 * self.length() * body.motion.angular.length();
+        let speed = (around.velocity - body.motion.linear).length().hypot(turning);
         let drag = FaceDrag::new(drag, fluid.density, fluid.gravity, self.length(), speed);
-        let sums = self.wetted(points, Faces::new(*motion, around.base, drag));
-        self.finish(&sums, pose, fluid, &around)
+        let sums = self.wetted(points, Faces::new(body.motion, around.base, drag));
+        self.finish(&sums, body, fluid, &around)
     }
 
     /// What all faces under water add up to. Not generic, so that it is compiled here, whoever calls it and however that is compiled.
@@ -59,14 +57,12 @@ impl Hull {
     /// Looks up the water at all points; nothing if there is none.
     fn look_up(
         &self,
-        pose: &Pose,
-        centre: Vec3,
+        body: &BodyState,
         points: &mut Vec<HullPoint>,
         mut surface: impl FnMut(Vec2) -> Option<Surface>,
     ) -> Option<Around> {
-        let world_from_body = Mat3::from_quat(pose.rotation);
-        // Relative to the centre of mass, so that a body a kilometre from the origin floats as precisely.
-        let origin = pose.position - centre;
+        let world_from_body = body.world_from_body();
+        let (origin, centre) = (body.origin(), body.centre);
         let mut around = Around { least: Vec3::INFINITY, most: Vec3::NEG_INFINITY, ..Around::default() };
         let mut count = 0.0;
         let (mut deepest, mut shallowest) = (0.0_f32, f32::INFINITY);
@@ -98,7 +94,7 @@ impl Hull {
         })
     }
 
-    fn finish(&self, sums: &Sums, pose: &Pose, fluid: &Fluid, around: &Around) -> Load {
+    fn finish(&self, sums: &Sums, body: &BodyState, fluid: &Fluid, around: &Around) -> Load {
         let weight = fluid.density * fluid.gravity;
         let mut load = sums.load(weight);
         load.submerged_volume = load.submerged_volume.min(self.volume);
@@ -117,7 +113,7 @@ impl Hull {
             load.stiffness.add_along(secant, Vec3::Y, centre);
         }
         let share = load.submerged_volume / self.volume * fluid.density;
-        let world_from_body = Mat3::from_quat(pose.rotation);
+        let world_from_body = body.world_from_body();
         let turned = |matrix: Mat3| world_from_body * matrix * world_from_body.transpose() * share;
         load.added_mass.add_at(turned(self.added_mass.linear), centre);
         load.added_mass.angular += turned(self.added_mass.angular);

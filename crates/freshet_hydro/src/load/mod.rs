@@ -10,7 +10,8 @@ pub use spatial::Spatial;
 pub use step::Inertia;
 
 use crate::waves::{GRAVITY, WATER_DENSITY};
-use glam::{Quat, Vec2, Vec3};
+use glam::{Mat3, Quat, Vec2, Vec3};
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// Where a body is: world from body.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -28,6 +29,35 @@ pub struct Motion {
     pub linear: Vec3,
     /// Angular velocity in the world, in rad/s.
     pub angular: Vec3,
+}
+
+/// A body as the water meets it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BodyState {
+    /// Where its frame is.
+    pub pose: Pose,
+    /// Its centre of mass in the world, in m.
+    pub centre: Vec3,
+    /// How it moves.
+    pub motion: Motion,
+}
+
+impl BodyState {
+    /// Turns directions of the body's frame into the world's.
+    pub fn world_from_body(&self) -> Mat3 {
+        Mat3::from_quat(self.pose.rotation)
+    }
+
+    /// The origin of the body's frame from its centre of mass, in the world, m. What is seen from there is as exact a kilometre from the
+    /// world's origin as near it.
+    pub fn origin(&self) -> Vec3 {
+        self.pose.position - self.centre
+    }
+
+    /// How fast water of this velocity passes the point of the body at `arm` (m) from its centre of mass, m/s.
+    pub fn passed_by(&self, water: Vec3, arm: Vec3) -> Vec3 {
+        water - self.motion.linear - self.motion.angular.cross(arm)
+    }
 }
 
 /// The water surface above or below a point.
@@ -66,7 +96,7 @@ impl Wrench {
     }
 }
 
-impl std::ops::Mul<f32> for Wrench {
+impl Mul<f32> for Wrench {
     type Output = Self;
 
     fn mul(self, factor: f32) -> Self {
@@ -74,11 +104,27 @@ impl std::ops::Mul<f32> for Wrench {
     }
 }
 
-impl std::ops::Add for Wrench {
+impl Add for Wrench {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
         Self { force: self.force + other.force, torque: self.torque + other.torque }
+    }
+}
+
+impl Neg for Wrench {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { force: -self.force, torque: -self.torque }
+    }
+}
+
+impl Sub for Wrench {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
     }
 }
 

@@ -1,7 +1,7 @@
 //! Matrices between motions and forces.
 use super::{Motion, Wrench};
 use glam::{Mat3, Vec3};
-use std::ops::{Add, AddAssign, Mul};
+use std::ops::{Add, Mul};
 
 /// A symmetric 6 × 6 matrix that turns a motion (velocity and angular velocity about the centre of mass) into a force and a torque:
 /// a resistance, an inertia, or, per displacement and small turn, a stiffness. In SI units.
@@ -61,12 +61,6 @@ impl Add for Spatial {
             coupling: self.coupling + other.coupling,
             angular: self.angular + other.angular,
         }
-    }
-}
-
-impl AddAssign for Spatial {
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
     }
 }
 

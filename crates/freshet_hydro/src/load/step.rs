@@ -37,12 +37,12 @@ impl Load {
         let constant = self.pressure + self.stream;
         let resisted = self.resistance.times(motion) + spring.times(&relative);
         let entering = (self.added_mass * self.entering).times(&relative);
-        let impulse = (constant + others + resisted * -1.0) * dt + entering * -1.0;
+        let impulse = (constant + others - resisted) * dt - entering;
         let change = solve(body, &(self.added_mass + (self.resistance + spring) * dt), impulse);
         let later = Motion { linear: motion.linear + change.linear, angular: motion.angular + change.angular };
         let moved = Motion { linear: later.linear - water.linear, angular: later.angular };
         let carried = self.added_mass.times(&change) + entering;
-        constant + (self.resistance.times(&later) + spring.times(&moved) + carried * dt.recip()) * -1.0
+        constant - self.resistance.times(&later) - spring.times(&moved) - carried * dt.recip()
     }
 
     /// θ = s²/(1 + s²) with s = ω dt, ω² being the greater of K/(m + a) in heave and a bound of it in roll and pitch: the sum of the

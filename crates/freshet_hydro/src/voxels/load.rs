@@ -3,7 +3,7 @@
 use glam::{Mat3, Vec2, Vec3};
 
 use super::{Cell, VoxelHull};
-use crate::load::{Fluid, Load, Motion, Pose, Surface};
+use crate::load::{BodyState, Fluid, Load, Surface};
 
 /// How strongly water resists the motion of a body through it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +52,7 @@ impl Wetted {
 }
 
 impl VoxelHull {
-    /// Pressure and drag on the hull at `pose` with `motion`, about the centre of mass `centre` (world, m).
+    /// Pressure and drag on the hull of `body`, about its centre of mass.
     ///
     /// `surface` gives the water at a world (x, z), or `None` where there is none.
     ///
@@ -60,17 +60,14 @@ impl VoxelHull {
     /// moves with one velocity from surface to bed.
     pub fn load(
         &self,
-        pose: &Pose,
-        centre: Vec3,
-        motion: &Motion,
+        body: &BodyState,
         fluid: &Fluid,
         drag: &Drag,
         mut surface: impl FnMut(Vec2) -> Option<Surface>,
     ) -> Load {
-        let world_from_body = Mat3::from_quat(pose.rotation);
+        let world_from_body = body.world_from_body();
         let drag = CellDrag::new(self, fluid, drag, &world_from_body);
-        // Relative to the centre of mass, so that a body a kilometre from the origin floats as precisely.
-        let origin = pose.position - centre;
+        let (origin, centre) = (body.origin(), body.centre);
         let mut load = Load::default();
         for cell in &self.cells {
             let arm = origin + world_from_body * cell.centroid;
@@ -81,7 +78,7 @@ impl VoxelHull {
             let covariance = world_from_body * cell.covariance * world_from_body.transpose();
             let wetted = Wetted::new(water.height - centre.y - arm.y, &covariance);
             if wetted.share > 0.0 {
-                add_cell(&mut load, cell, &wetted, arm, &water, motion, fluid, &drag);
+                add_cell(&mut load, cell, &wetted, arm, &water, body, fluid, &drag);
             }
         }
         if load.submerged_volume > 0.0 {
@@ -98,7 +95,7 @@ fn add_cell(
     wetted: &Wetted,
     arm: Vec3,
     water: &Surface,
-    motion: &Motion,
+    body: &BodyState,
     fluid: &Fluid,
     drag: &CellDrag,
 ) {
@@ -112,7 +109,7 @@ fn add_cell(
     // Rising by y loses ρ g A y of push.
     load.stiffness.add_along(weight * area, Vec3::Y, arm);
 
-    let relative = water.velocity - motion.linear - motion.angular.cross(arm);
+    let relative = body.passed_by(water.velocity, arm);
     let resistance = drag.at(volume, relative.length());
     load.resistance.add_at(resistance, arm);
     load.stream.add_at(resistance * water.velocity, arm);

@@ -7,7 +7,7 @@ use glam::{EulerRot, Mat3, Quat, Vec2, Vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::load::{Fluid, Inertia, Load, Motion, Pose, Surface, Wrench};
+use crate::load::{BodyState, Fluid, Inertia, Load, Motion, Pose, Surface, Wrench};
 use crate::waves::{GRAVITY, WATER_DENSITY};
 
 /// Weight of a cubic metre of water, N.
@@ -35,9 +35,8 @@ fn still_load(hull: &VoxelHull, height: f32, rotation: Quat) -> Load {
     let position = Vec3::Y * height;
     let pose = Pose { position, rotation };
     let centre = position + rotation * hull.centroid();
-    let motion = Motion::default();
-    let (fluid, drag) = (Fluid::default(), Drag::default());
-    hull.load(&pose, centre, &motion, &fluid, &drag, |_| Some(STILL))
+    let body = BodyState { pose, centre, ..BodyState::default() };
+    hull.load(&body, &Fluid::default(), &Drag::default(), |_| Some(STILL))
 }
 
 /// Height of the body's origin at which the water carries a body of relative density `s`, by bisection.
@@ -134,8 +133,7 @@ fn a_slope_pushes_downhill() {
     let hull = cuboid(Vec3::ONE);
     let slope = Vec2::new(0.1, -0.2);
     let water = |at: Vec2| Some(Surface { height: 10.0 + slope.dot(at), slope, velocity: Vec3::ZERO });
-    let (motion, fluid, drag) = (Motion::default(), Fluid::default(), Drag::default());
-    let load = hull.load(&Pose::default(), Vec3::ZERO, &motion, &fluid, &drag, water);
+    let load = hull.load(&BodyState::default(), &Fluid::default(), &Drag::default(), water);
     assert!(load.pressure.force.abs_diff_eq(WEIGHT * Vec3::new(-0.1, 1.0, 0.2), 1e-4 * WEIGHT));
 }
 
@@ -173,7 +171,8 @@ fn drift(hull: &VoxelHull, s: f32, dt: f32, seconds: f32) -> Vec<f32> {
     (0..(seconds / dt) as usize)
         .map(|_| {
             let pose = Pose { position, rotation: Quat::IDENTITY };
-            let load = hull.load(&pose, position, &motion, &fluid, &drag, |_| Some(stream));
+            let body = BodyState { pose, centre: position, motion };
+            let load = hull.load(&body, &fluid, &drag, |_| Some(stream));
             let wrench = load.over_step(
                 &motion,
                 &Inertia { inverse_mass: Vec3::splat(mass.recip()), inverse_inertia },
@@ -246,8 +245,10 @@ proptest! {
         let before = Motion { linear: linear.into(), angular: angular.into() };
         let fluid = Fluid { gravity: 0.0, ..Fluid::default() };
         let pose = Pose { position: Vec3::NEG_Y * 10.0, rotation: Quat::IDENTITY };
-        let load = hull.load(&pose, pose.position, &before, &fluid, &Drag::default(), |_| Some(STILL));
-        let wrench = load.over_step(&before, &Inertia { inverse_mass: Vec3::splat(mass.recip()), inverse_inertia: inertia.inverse() }, Wrench::ZERO, dt);
+        let body = BodyState { pose, centre: pose.position, motion: before };
+        let load = hull.load(&body, &fluid, &Drag::default(), |_| Some(STILL));
+        let solver = Inertia { inverse_mass: Vec3::splat(mass.recip()), inverse_inertia: inertia.inverse() };
+        let wrench = load.over_step(&before, &solver, Wrench::ZERO, dt);
         let energy = |m: &Motion| mass * m.linear.length_squared() + m.angular.dot(inertia * m.angular);
         let after = Motion {
             linear: before.linear + wrench.force * (dt / mass),
