@@ -21,10 +21,10 @@ pub struct Floating {
     /// How the water's push is found. Default [`BuoyancyModel::Hull`].
     pub model: BuoyancyModel,
     /// Most triangles of the hull, 12…20000, default 400. Round shapes have some 300; finer meshes are simplified, with their volume
-    /// and centre.
+    /// and centre. Parts that overlap keep theirs.
     pub max_triangles: u32,
-    /// Centre of mass in the body's frame, m; that of the homogeneous hull if there is none. Default none. Not for [`Weight::Rapier`],
-    /// which has its own.
+    /// Centre of mass in the body's frame, m; that of the homogeneous hull if there is none. Default none. The inertia about it is that of
+    /// the homogeneous hull. Not for [`Weight::Rapier`], which has both its own.
     pub center_of_mass: Option<Vec3>,
     /// Whether currents and waves carry the body. Default true; without it the water around the body counts as still.
     pub current: bool,

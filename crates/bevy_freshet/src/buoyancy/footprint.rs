@@ -47,7 +47,7 @@ impl Footprint {
             (expected.height - found.height).abs() <= FLAT * self.size.max_element()
                 && expected.velocity.distance(found.velocity) <= EVEN
         };
-        // The second lies where no wave that fits the corners and the middle does.
+        // The second lies off all symmetries of the corners and the middle, so that a short wave that fits these shows there.
         if places > 2 && !(is_near(Vec2::splat(0.5)) && is_near(vec2(0.31, 0.66))) {
             self.look_up_lattice(places, &water);
         }

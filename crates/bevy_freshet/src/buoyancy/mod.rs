@@ -6,8 +6,8 @@
 //!
 //! 1. hulls are built for new bodies, and rebuilt when a collider, a mesh or a scale has changed;
 //! 2. [`WaterSystems::Sample`]: the water is looked up on a lattice over each body's footprint;
-//! 3. [`WaterSystems::Force`]: pressure, resistance and added mass ([`freshet_hydro::load`]) are lent to the solver, for one step: after it they are taken back,
-//!    so that they never add up and a game's own `ExternalForce` keeps its value and its effect.
+//! 3. [`WaterSystems::Force`]: pressure, resistance and added mass ([`freshet_hydro::load`]) are lent to the solver, for one
+//!    step: after it they are taken back, so that they never add up and a game's own `ExternalForce` keeps its value and its effect.
 //!
 //! The forces go to the solver's body itself, not through the component `ExternalForce`: writing that one wakes the
 //! body each time, and a body that floats would never sleep.

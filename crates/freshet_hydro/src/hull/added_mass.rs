@@ -1,7 +1,7 @@
 //! The water that has to be moved with a hull.
 //!
-//! In an ideal fluid a body that is accelerated along an axis moves some water with it, as if it were heavier by k ρ V, and by k′ ρ V when
-//! it is turned. For ellipsoids both are known exactly (Lamb, *Hydrodynamics*, 6th ed. 1932, §§ 114–115), and a hull counts as the
+//! In an ideal fluid a body that is accelerated along an axis moves some water with it, as if it were heavier by k ρ V, and by k′ ρ V
+//! when it is turned. For ellipsoids both are known exactly (Lamb, *Hydrodynamics*, 6th ed. 1932, §§ 114–115), and a hull counts as the
 //! ellipsoid of its second moments. Bodies with edges move more than that, squarely cut prisms by about 0.18 ρ V (k of a cube is 0.68
 //! and not 0.5: DNV-RP-C205, *Environmental conditions and environmental loads*, table D-2): how much of it a hull gets is told by
 //! its volume, which for equal second moments is 0.888 of the ellipsoid's.

@@ -21,10 +21,9 @@ pub struct HullDrag {
     /// Pressure coefficient of faces that lean away from the water's way, ≥ 0, default 0.72: with that of squarely met ones it gives a
     /// ball 0.47 (Hoerner). Less for well-formed hulls.
     pub fair: f32,
-    /// Strength of the waves that a moving hull sends out, ≥ 0, default 0.67: a level face near the surface that moves up or down at
-    /// v is resisted by this · ρ √(g L) v per area, L being the edge of a cube of the hull's volume, and an upright one by 0.15 of it. With it the heave of a
-    /// half-submerged ball dies out by 0.1 of critical damping (Havelock, *Waves due to a floating sphere making periodic heaving
-    /// oscillations*, Proc. R. Soc. A 231, 1955).
+    /// Strength of the waves that a moving hull sends out, ≥ 0, default 0.67: a level face near the surface that moves up or down at v
+    /// is resisted by this · ρ √(g L) v per area, L being the edge of a cube of the hull's volume, and an upright one that moves along
+    /// the surface by 0.15 of it. A half-submerged ball then stops heaving by 0.11 of critical damping.
     pub radiation: f32,
 }
 
@@ -34,8 +33,8 @@ impl Default for HullDrag {
     }
 }
 
-/// Skin friction coefficient at a Reynolds number: C_f = 0.075/(log₁₀ Re − 2)² (ITTC, *8th International Towing Tank Conference*, Madrid
-/// 1957), and below Re = 2·10⁴, where that line rises without bounds, ∝ Re^(−½) as for a laminar layer.
+/// Skin friction coefficient at a Reynolds number: C_f = 0.075/(log₁₀ Re − 2)² (8th International Towing Tank Conference, Madrid 1957),
+/// and below Re = 2·10⁴, where that line rises without bounds, ∝ Re^(−½) as for a laminar layer.
 pub fn friction_coefficient(reynolds: f32) -> f32 {
     let ship = |reynolds: f32| 0.075 / (libm::log10f(reynolds) - 2.0).powi(2);
     if reynolds >= LAMINAR { ship(reynolds) } else { ship(LAMINAR) * (LAMINAR / reynolds.max(1e-6)).sqrt() }
