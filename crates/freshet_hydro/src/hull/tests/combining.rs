@@ -91,10 +91,20 @@ fn a_union_of_nothing_is_refused() {
     assert_eq!(Hull::union(Vec::new()), Err(crate::hull::HullError::NoTriangles));
 }
 
+/// Places of a lattice through a ball of radius 2.1 m, and the volume that each stands for, m³. It is turned, as faces along its axes would
+/// be misjudged whole.
+fn lattice() -> (impl Iterator<Item = Vec3>, f32) {
+    const COUNT: usize = 56;
+    let step = 4.2 / COUNT as f32;
+    let turn = Quat::from_euler(glam::EulerRot::YXZ, 0.4, 0.7, 0.2);
+    let at = move |i: usize| Vec3::new((i % COUNT) as f32, (i / COUNT % COUNT) as f32, (i / COUNT / COUNT) as f32);
+    ((0..COUNT.pow(3)).map(move |i| turn * ((at(i) + 0.5) * step - 2.1)), step.powi(3))
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Three parts in any pose, against counting points on a lattice.
+    /// Three parts in any pose, against counting places of a lattice.
     #[test]
     fn unions_hold_what_a_lattice_finds(
         turns in prop::array::uniform3(prop::array::uniform4(-1.0_f32..1.0)),
@@ -114,12 +124,10 @@ proptest! {
             };
             !part.triangles().iter().any(beyond)
         });
-        let (n, width) = (40, 4.0);
-        let step = width / n as f32;
-        let places = (0..n * n * n).map(|i| (Vec3::new((i % n) as f32, (i / n % n) as f32, (i / n / n) as f32) + 0.5) * step - width / 2.0);
-        let counted = places.filter(|&place| inside(place)).count() as f32 * step.powi(3);
+        let (places, each) = lattice();
+        let counted = places.filter(|&place| inside(place)).count() as f32 * each;
         let hull = union(parts.clone());
-        // The surface is some 8 m², and a lattice of 0.1 m misjudges it at random by some 10⁻² m³.
+        // The surface of some 8 m² goes through 1400 of its cells, each misjudged by up to 2·10⁻⁴ m³ at random: together by 8·10⁻³ m³.
         prop_assert!((hull.volume() - counted).abs() < 0.04, "{} for {counted}", hull.volume());
     }
 }
