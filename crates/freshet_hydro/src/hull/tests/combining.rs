@@ -93,7 +93,7 @@ fn a_union_of_nothing_is_refused() {
 
 /// One place somewhere in every cell of a lattice over a cube of 4.2 m, and the volume of a cell, m³. In the middle of the cells, faces
 /// along the lattice would be misjudged whole.
-fn places() -> (impl Iterator<Item = Vec3>, f32) {
+fn scattered() -> (impl Iterator<Item = Vec3>, f32) {
     const COUNT: usize = 56;
     let step = 4.2 / COUNT as f32;
     let cell = |i: usize| Vec3::new((i % COUNT) as f32, (i / COUNT % COUNT) as f32, (i / COUNT / COUNT) as f32);
@@ -130,7 +130,7 @@ proptest! {
             };
             !part.triangles().iter().any(beyond)
         });
-        let (places, each) = places();
+        let (places, each) = scattered();
         let counted = places.filter(|&place| inside(place)).count() as f32 * each;
         let hull = union(parts.clone());
         // The surface of some 8 m² goes through 1400 of its cells, each misjudged by up to 2·10⁻⁴ m³ at random: together by 8·10⁻³ m³.
