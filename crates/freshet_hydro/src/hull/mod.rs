@@ -11,6 +11,7 @@
 //! V volume (m³), c centroid (m), C second central moments (m²): the mean of (x − c)(x − c)ᵀ over the volume.
 
 mod added_mass;
+mod columns;
 mod convex;
 mod faces;
 mod inside;
@@ -28,6 +29,7 @@ mod union;
 mod weld;
 
 pub use added_mass::AddedMass;
+pub use columns::{ColumnRaster, Columns, SurfacePlane};
 pub use load::HullPoint;
 pub use resistance::{HullDrag, VISCOSITY, friction_coefficient};
 pub use union::Union;

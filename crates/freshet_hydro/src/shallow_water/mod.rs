@@ -2,6 +2,7 @@
 
 mod advance;
 mod balance;
+mod displaced;
 mod edge;
 mod edges;
 mod exchange;
@@ -16,6 +17,7 @@ mod strip;
 
 pub use advance::Advance;
 pub use balance::Balance;
+pub use displaced::{Displaced, Displacement};
 pub use edge::DomainSide;
 pub use edges::{Edge, EdgePart};
 pub use exchange::{Forcing, Restored};
@@ -98,6 +100,8 @@ pub struct ShallowWater {
     sources: Vec<(PointSource, Footprint)>,
     rates: Vec<f32>,
     pushes: Vec<Push>,
+    /// Cells whose `bed` bodies raise.
+    raised: Vec<displaced::Raised>,
     rows: Vec<Rows>,
     /// Greatest |u| + c of `now`, m/s.
     fastest: f32,
@@ -139,6 +143,7 @@ impl ShallowWater {
             sources: Vec::new(),
             rates: Vec::new(),
             pushes: Vec::new(),
+            raised: Vec::new(),
             rows: vec![Rows::default(); rows.div_ceil(step::band(rows))],
             fastest: 0.0,
             time: 0.0,
@@ -161,7 +166,8 @@ impl ShallowWater {
         self.time
     }
 
-    /// Elevation of every cell's bed, m, row by row from the north; rounded to 2⁻¹⁶ m.
+    /// Elevation of every cell's bed, m, row by row from the north; rounded to 2⁻¹⁶ m. Where bodies are it is higher by what they
+    /// [displace](ShallowWater::set_displaced).
     pub fn bed(&self) -> &[f32] {
         &self.bed
     }
@@ -246,6 +252,7 @@ impl ShallowWater {
         for (own, &elevation) in self.bed.iter_mut().zip(bed.values()) {
             *own = rounded(elevation);
         }
+        self.raise_again();
         Ok(())
     }
 

@@ -6,10 +6,10 @@ use super::{
 use crate::waves::GRAVITY;
 use glam::{UVec2, Vec2};
 
-/// What a body does to the water of one cell while it is in it: the quadratic drag between the two.
+/// What a body does to the water of one cell while it is in it: the quadratic drag between the two, and a given force.
 ///
 /// ```text
-/// ∂(h u)/∂t = s |v − u| (v − u)        s = ½ C D/L
+/// ∂(h u)/∂t = s |v − u| (v − u) + f        s = ½ C D/L
 /// ```
 ///
 /// with the velocity v of the body, its drag coefficient C, its length L (m) and the depth D (m) of what it displaces, averaged over
@@ -24,16 +24,18 @@ pub struct Push {
     pub strength: f32,
     /// Velocity v of the body (x, z), m/s.
     pub velocity: Vec2,
+    /// Force f on the water (x, z) per area and density, m²/s², below 10⁶.
+    pub force: Vec2,
 }
 
-/// Strengths from this on are taken for a mistake.
+/// Strengths and forces from this on are taken for a mistake.
 const STRONGEST: f32 = 1e6;
 
 impl ShallowWater {
     /// Replaces what bodies do to the water in every step from now on.
     ///
     /// # Errors
-    /// [`ShallowWaterError::Number`] if a cell is outside, a strength is negative or not below 10⁶, or a velocity is not below 10 km/s.
+    /// [`ShallowWaterError::Number`] if a cell is outside, a strength is negative or not below 10⁶, a force is not below that, or a velocity is not below 10 km/s.
     pub fn set_pushes(&mut self, pushes: &[Push]) -> Result<(), ShallowWaterError> {
         for push in pushes {
             if push.cell.cmpge(self.size()).any() {
@@ -44,6 +46,9 @@ impl ShallowWater {
             }
             if !(push.velocity.is_finite() && push.velocity.abs().max_element() < FASTEST) {
                 return Err(number("the speed of a push", "finite and below 10 km/s", push.velocity.length()));
+            }
+            if !(push.force.is_finite() && push.force.abs().max_element() < STRONGEST) {
+                return Err(number("the force of a push", "finite and below 10⁶", push.force.length()));
             }
         }
         self.pushes.clear();
@@ -70,7 +75,9 @@ impl ShallowWater {
             let w = speed(self.now.discharge_z[index]);
             let (from_u, from_w) = (u - push.velocity.x, w - push.velocity.y);
             let kept = kept_of_difference(push.strength * factor * dt, (from_u * from_u + from_w * from_w).sqrt());
-            let (u, w) = (push.velocity.x + from_u * kept, push.velocity.y + from_w * kept);
+            let gained = push.force * (factor * dt);
+            let u = sane(push.velocity.x + from_u * kept + gained.x, FASTEST);
+            let w = sane(push.velocity.y + from_w * kept + gained.y, FASTEST);
             self.now.discharge_x[index] = depth * u;
             self.now.discharge_z[index] = depth * w;
             self.fastest = max(self.fastest, max(u.abs(), w.abs()) + (GRAVITY * depth).sqrt());

@@ -188,7 +188,12 @@ fn numbers_out_of_range_are_refused() {
         assert!(water.set_manning(number).is_err() && water.set_courant(number).is_err(), "{number}");
     }
     for number in [f32::NAN, f32::INFINITY, 1e30] {
-        let push = |strength: f32, speed: f32| Push { cell: UVec2::ZERO, strength, velocity: Vec2::new(speed, 0.0) };
+        let push = |strength: f32, speed: f32| Push {
+            cell: UVec2::ZERO,
+            strength,
+            velocity: Vec2::new(speed, 0.0),
+            ..Default::default()
+        };
         assert!(water.set_pushes(&[push(number, 1.0)]).is_err() && water.set_pushes(&[push(1.0, number)]).is_err());
     }
     assert!(water.set_pushes(&[Push { cell: UVec2::splat(1000), ..Default::default() }]).is_err());

@@ -37,6 +37,13 @@ struct Push {
     cell: u32,
     strength: f32,      // ½ C D/L
     velocity: vec2<f32>,    // of the body, units: m/s
+    force: vec2<f32>,       // on the water, per area and density, units: m²/s²
+}
+
+// A cell whose bed bodies raise, or have left.
+struct Raised {
+    cell: u32,
+    bed: f32,           // units: m
 }
 
 // What flows out of the domain through a cell of a side.

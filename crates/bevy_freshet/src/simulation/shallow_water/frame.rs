@@ -40,6 +40,8 @@ pub(crate) struct GpuWork {
     pub edges: Vec<GpuEdge>,
     /// What bodies do to the water, each cell at most once.
     pub pushes: Vec<GpuPush>,
+    /// Cells that bodies are in, by ascending index, with the elevation of the bed itself and of what counts, m.
+    pub raised: Vec<(u32, [f32; 2])>,
     /// The state that replaces what the GPU has, unless it has it already.
     pub start: Option<Arc<StartState>>,
     /// Bed, walls and sources that replace what the GPU has.
@@ -70,7 +72,7 @@ pub(crate) struct StartState {
 pub(crate) struct Ground {
     /// Counts the grounds; above 0.
     pub version: u64,
-    /// Elevation of every cell's bed, m.
+    /// Elevation of every cell's bed without bodies, m.
     pub bed: Vec<f32>,
     /// Crests of the eastern and southern face (m) and the point sources (m/s) of every cell; empty if there are neither.
     pub extras: Vec<Vec4>,

@@ -71,6 +71,7 @@ impl Plugin for StagesPlugin {
         embedded_asset!(app, "border.wgsl");
         embedded_asset!(app, "coarsen.wgsl");
         embedded_asset!(app, "push.wgsl");
+        embedded_asset!(app, "raise.wgsl");
         embedded_asset!(app, "show.wgsl");
         embedded_asset!(app, "step.wgsl");
         app.add_plugins(ExtractComponentPlugin::<ShallowFrame>::default());

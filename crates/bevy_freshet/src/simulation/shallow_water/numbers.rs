@@ -44,6 +44,17 @@ pub(crate) struct GpuPush {
     pub cell: u32,
     pub strength: f32,
     pub velocity: Vec2,
+    pub force: Vec2,
+}
+
+/// A cell whose bed bodies raise, or have left.
+#[derive(Clone, Copy, Debug, Default, PartialEq, ShaderType)]
+#[cfg_attr(test, derive(Reflect))]
+pub(crate) struct GpuRaised {
+    /// Index of the cell.
+    pub cell: u32,
+    /// What counts as its bed, m.
+    pub bed: f32,
 }
 
 /// The clock; atomic numbers are plain ones here.
@@ -82,6 +93,7 @@ mod tests {
         assert_same_layout::<GpuClock, _>(&wgsl, "Clock");
         assert_same_layout::<GpuEdge, _>(&wgsl, "Edge");
         assert_same_layout::<GpuPush, _>(&wgsl, "Push");
+        assert_same_layout::<GpuRaised, _>(&wgsl, "Raised");
         assert_same_layout::<GpuLeaving, _>(&wgsl, "Leaving");
     }
 }

@@ -155,7 +155,7 @@ impl Simulation {
         let ground = (!holds || !has_ground).then(|| {
             Arc::new(Ground {
                 version,
-                bed: self.water.bed().to_vec(),
+                bed: self.water.ground(),
                 extras: extras(&self.water, &sources, has_walls || has_sources),
             })
         });
@@ -164,6 +164,7 @@ impl Simulation {
             asked,
             edges: self.water.edge_cells().map(|(kind, [value, entering])| GpuEdge { kind, value, entering }).collect(),
             pushes: pushes(&self.water),
+            raised: raised(&self.water),
             start,
             ground,
             has_walls,
@@ -181,8 +182,16 @@ pub(super) fn pushes(water: &ShallowWater) -> Vec<GpuPush> {
         cell: push.cell.y * columns + push.cell.x,
         strength: push.strength,
         velocity: push.velocity,
+        force: push.force,
     };
     water.pushes().iter().map(push).collect()
+}
+
+/// Where bodies are in the water.
+pub(super) fn raised(water: &ShallowWater) -> Vec<(u32, [f32; 2])> {
+    let mut raised: Vec<_> = water.raised().map(|(index, elevations)| (index as u32, elevations)).collect();
+    raised.sort_unstable_by_key(|(cell, _)| *cell);
+    raised
 }
 
 /// Crests and sources of every cell; nothing if there are none.

@@ -33,6 +33,8 @@ struct Plan {
     pushes: Option<[BindGroup; 2]>,
     /// How many cells they push.
     pushed: u32,
+    /// Cells of the bed that bodies enter and leave, and how many there are.
+    raise: Option<(BindGroup, u32)>,
     /// Whether there are point sources, and walls.
     variant: [bool; 2],
     steps: u32,
@@ -131,6 +133,7 @@ impl Surroundings<'_> {
             pictures,
             pushes: if work.pushes.is_empty() { None } else { Some([self.push(state, 0)?, self.push(state, 1)?]) },
             pushed: work.pushes.len() as u32,
+            raise: self.raise(state),
             variant: [work.has_sources, work.has_walls],
             steps: work.steps.next_multiple_of(2),
             edges: 2 * (size.x + size.y),
@@ -149,6 +152,15 @@ impl Surroundings<'_> {
             state.pushes.binding()?,
         ));
         Some(self.device.create_bind_group("water_shallow_push", &layout, &entries))
+    }
+
+    /// What changes the bed, if there is anything to change.
+    fn raise(&self, state: &ShallowState) -> Option<(BindGroup, u32)> {
+        let count = state.raising.get().len() as u32;
+        let layout = self.cache.get_bind_group_layout(&self.stages.raise_layout);
+        let raising = state.raising.binding().filter(|_| count > 0)?;
+        let entries = BindGroupEntries::sequential((state.bed.as_entire_binding(), raising));
+        Some((self.device.create_bind_group("water_shallow_raise", &layout, &entries), count))
     }
 }
 
@@ -191,6 +203,9 @@ fn run(plan: &Plan, stages: &Stages, cache: &PipelineCache, pass: &mut ComputePa
         pass.dispatch_workgroups(workgroups.x, workgroups.y, 1);
     };
     let workgroups = |count: u32| uvec2(count.div_ceil(64), 1);
+    if let Some((group, count)) = &plan.raise {
+        dispatch(stages.raise, group, workgroups(*count));
+    }
     dispatch(stages.begin, &plan.groups[0], UVec2::ONE);
     let [sources, walls] = plan.variant.map(usize::from);
     let stage = &stages.steps[sources][walls];

@@ -26,7 +26,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let rate = body.strength * factor * dt;
     let size = sqrt(difference.x * difference.x + difference.y * difference.y);
     let kept = 2.0 / (1.0 + sqrt(1.0 + 4.0 * rate * size));
-    let velocity = body.velocity + difference * kept;
+    let pushed = body.velocity + difference * kept + body.force * (factor * dt);
+    let velocity = vec2(sane(pushed.x, FASTEST), sane(pushed.y, FASTEST));
     state[body.cell] = vec4(before.x, depth * velocity, before.w);
     let signal = max(abs(velocity.x), abs(velocity.y)) + sqrt(GRAVITY * depth);
     atomicMax(&clock.fastest[1u - parity.x], bitcast<u32>(signal));

@@ -1,5 +1,5 @@
 //! The pipelines of the stages.
-use super::numbers::{GpuClock, GpuEdge, GpuLeaving, GpuPush, GpuShallow};
+use super::numbers::{GpuClock, GpuEdge, GpuLeaving, GpuPush, GpuRaised, GpuShallow};
 use bevy::{
     asset::{AssetServer, load_embedded_asset},
     prelude::*,
@@ -21,7 +21,7 @@ pub(super) const COLUMNS: u32 = 4;
 /// Rows that an invocation goes down.
 pub(super) const ROWS: u32 = 16;
 
-/// All stages; they bind the same, but for `push`.
+/// All stages; they bind the same, but for `push`, `raise` and `coarsen`.
 #[derive(Resource)]
 pub(super) struct Stages {
     pub layout: BindGroupLayoutDescriptor,
@@ -30,6 +30,8 @@ pub(super) struct Stages {
     pub steps: [[Step; 2]; 2],
     pub push: CachedComputePipelineId,
     pub push_layout: BindGroupLayoutDescriptor,
+    pub raise: CachedComputePipelineId,
+    pub raise_layout: BindGroupLayoutDescriptor,
     /// Without and with walls; binds the pictures as well.
     pub show: [CachedComputePipelineId; 2],
     pub pictures: BindGroupLayoutDescriptor,
@@ -49,7 +51,7 @@ impl Stages {
         let steps = self.steps.iter().flatten().flat_map(|step| [step.step, step.border]);
         steps
             .chain(self.show)
-            .chain([self.begin, self.push, self.coarsen])
+            .chain([self.begin, self.push, self.raise, self.coarsen])
             .all(|stage| cache.get_compute_pipeline(stage).is_some())
     }
 }
@@ -88,7 +90,7 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
             ..default()
         })
     });
-    let (push_layout, coarsen_layout) = (push_layout(), coarsen_layout());
+    let (push_layout, raise_layout, coarsen_layout) = (push_layout(), raise_layout(), coarsen_layout());
     let lone = |label: &'static str, layout: &BindGroupLayoutDescriptor, shader: Handle<Shader>| {
         cache.queue_compute_pipeline(ComputePipelineDescriptor {
             label: Some(label.into()),
@@ -99,12 +101,15 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
         })
     };
     let push = lone("water_shallow_push", &push_layout, load_embedded_asset!(&*assets, "push.wgsl"));
+    let raise = lone("water_shallow_raise", &raise_layout, load_embedded_asset!(&*assets, "raise.wgsl"));
     let coarsen = lone("water_shallow_coarsen", &coarsen_layout, load_embedded_asset!(&*assets, "coarsen.wgsl"));
     commands.insert_resource(Stages {
         begin: stage("water_shallow_begin", &step, "begin", &[]),
         steps: [[pair(&[]), pair(&["WALLS"])], [pair(&["SOURCES"]), pair(&["SOURCES", "WALLS"])]],
         push,
         push_layout,
+        raise,
+        raise_layout,
         show,
         pictures,
         coarsen,
@@ -143,6 +148,17 @@ fn push_layout() -> BindGroupLayoutDescriptor {
         ),
     );
     BindGroupLayoutDescriptor::new("water_shallow_push", &entries)
+}
+
+fn raise_layout() -> BindGroupLayoutDescriptor {
+    let entries = BindGroupLayoutEntries::sequential(
+        ShaderStages::COMPUTE,
+        (
+            storage_buffer_sized(false, Some(f32::min_size())),
+            storage_buffer_read_only_sized(false, Some(GpuRaised::min_size())),
+        ),
+    );
+    BindGroupLayoutDescriptor::new("water_shallow_raise", &entries)
 }
 
 fn layout() -> BindGroupLayoutDescriptor {

@@ -2,7 +2,7 @@
 use super::{
     GpuWork, ShallowFrame, ShallowWork,
     frame::{Ground, StartState},
-    numbers::{GpuClock, GpuEdge, GpuLeaving, GpuPush, GpuShallow},
+    numbers::{GpuClock, GpuEdge, GpuLeaving, GpuPush, GpuRaised, GpuShallow},
     returned::Copies,
 };
 use bevy::{
@@ -25,6 +25,10 @@ pub(super) struct ShallowState {
     pub numbers: UniformBuffer<GpuShallow>,
     pub edges: StorageBuffer<Vec<GpuEdge>>,
     pub pushes: StorageBuffer<Vec<GpuPush>>,
+    /// Cells of the bed that change in this frame.
+    pub raising: StorageBuffer<Vec<GpuRaised>>,
+    /// Cells that bodies are in, as the bed has them.
+    raised: Vec<(u32, [f32; 2])>,
     /// Which of two values a step reads: 0 in the first and 1 in the second.
     pub parities: [UniformBuffer<UVec4>; 2],
     pub clock: Buffer,
@@ -58,6 +62,8 @@ impl ShallowState {
             numbers: default(),
             edges: default(),
             pushes: default(),
+            raising: default(),
+            raised: Vec::new(),
             parities: [parity(0), parity(1)],
             clock: buffer("water_shallow_clock", &bytes_of(&clock)),
             states: [buffer("water_shallow_a", &cells), buffer("water_shallow_b", &cells)],
@@ -70,6 +76,7 @@ impl ShallowState {
         state.numbers.set_label(Some("water_shallow_numbers"));
         state.edges.set_label(Some("water_shallow_edges"));
         state.pushes.set_label(Some("water_shallow_pushes"));
+        state.raising.set_label(Some("water_shallow_raised"));
         state.set_ground(device, ground, work.has_sources);
         state
     }
@@ -80,6 +87,7 @@ impl ShallowState {
             device.create_buffer_with_data(&BufferInitDescriptor { label: Some(label), contents, usage: STORAGE })
         };
         self.bed = buffer("water_shallow_bed", &bytes_of_list(&ground.bed));
+        self.raised.clear();
         let none = [Vec4::ZERO];
         self.extras = buffer(
             "water_shallow_extras",
@@ -104,10 +112,24 @@ impl ShallowState {
             self.pushes.set(work.pushes.clone());
             self.pushes.write_buffer(device, queue);
         }
+        self.raising.set(changes(&self.raised, &work.raised));
+        if !self.raising.get().is_empty() {
+            self.raising.write_buffer(device, queue);
+        }
+        self.raised.clone_from(&work.raised);
         self.parities.iter_mut().for_each(|parity| parity.write_buffer(device, queue));
         work.held.start.store(self.start, Ordering::Relaxed);
         work.held.ground.store(self.ground, Ordering::Relaxed);
     }
+}
+
+/// What a bed with bodies in these cells has to change for them to be in those; both lists ascend.
+fn changes(old: &[(u32, [f32; 2])], new: &[(u32, [f32; 2])]) -> Vec<GpuRaised> {
+    let is_in = |list: &[(u32, [f32; 2])], cell: u32| list.binary_search_by_key(&cell, |(cell, _)| *cell);
+    let left = old.iter().filter(|(cell, _)| is_in(new, *cell).is_err());
+    let left = left.map(|&(cell, [ground, _])| GpuRaised { cell, bed: ground });
+    let moved = new.iter().filter(|raised| is_in(old, raised.0).map(|place| old[place]) != Ok(**raised));
+    left.chain(moved.map(|&(cell, [_, bed])| GpuRaised { cell, bed })).collect()
 }
 
 /// Bytes of a value in the layout of a storage buffer.

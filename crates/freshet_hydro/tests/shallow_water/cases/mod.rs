@@ -2,6 +2,7 @@
 
 pub mod basin;
 pub mod dam_break;
+pub mod displaced;
 pub mod edges;
 pub mod order;
 pub mod push;
@@ -21,6 +22,14 @@ macro_rules! every_case {
         $on! {
             basin { planar }
             dam_break { ritter_and_stoker }
+            displaced {
+                a_body_that_is_lowered_raises_the_level
+                a_resting_body_leaves_still_water_still
+                a_body_that_drifts_leaves_no_trace
+                a_ring_holds_what_was_displaced
+                what_pushes_the_body_pushes_the_water_back
+                mirrored_bodies_make_mirrored_waves
+            }
             edges {
                 reflect
                 a_ring_leaves

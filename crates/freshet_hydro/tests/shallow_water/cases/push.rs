@@ -21,12 +21,13 @@ fn disc(water: &ShallowWater, at: Vec2, radius: f64, draft: f64, velocity: Vec2)
         cell: UVec2::new(index as u32 % columns, index as u32 / columns),
         strength: (0.5 * cover(index) * draft / length) as f32,
         velocity,
+        ..Push::default()
     };
     (0..water.depths().len()).map(push).filter(|push| push.strength > 0.0).collect()
 }
 
 /// Volume times velocity of all water, m⁴/s.
-fn momentum(water: &ShallowWater) -> [f64; 2] {
+pub(super) fn momentum(water: &ShallowWater) -> [f64; 2] {
     let area = f64::from(water.cell_size()).powi(2);
     let of_cell = |index: usize| {
         let velocity = water.velocity(index).as_dvec2() * f64::from(water.depths()[index]);
