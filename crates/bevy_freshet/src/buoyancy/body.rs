@@ -1,6 +1,7 @@
 //! A floating body: its hull, built from its colliders or its mesh, and the mass that follows from it.
 
 use super::{
+    exchange::Exchanging,
     floating::{Buoyancy, BuoyancyModel, Floating, Weight},
     footprint::Footprint,
     force::{Lent, Rest},
@@ -38,6 +39,8 @@ pub(crate) struct Body {
     pub(super) footprint: Footprint,
     /// What the solver has to give back after the step.
     pub(super) lent: Option<Lent>,
+    /// What it and simulated water do to each other.
+    pub(super) exchanging: Exchanging,
     /// What held the body when it was last awake.
     pub(super) rest: Rest,
 }
@@ -114,6 +117,7 @@ impl Body {
     ) -> Result<(), String> {
         self.form = None;
         self.submerged = None;
+        self.exchanging = Exchanging::default();
         self.solids = solids;
         if self.solids.is_empty() {
             return Err("has neither a collider nor a mesh with a volume; the body does not float".into());
@@ -215,7 +219,7 @@ pub(super) fn build_hulls(
         .collect();
     for (entity, floating, handle, link, mesh, transform, mut state, mut buoyancy) in &mut bodies {
         let Ok((mut set, mut colliders)) = contexts.get_mut(link.0) else { continue };
-        let Some(body) = set.bodies.get(handle.0).filter(|body| body.is_dynamic()) else { continue };
+        let Some(body) = set.bodies.get(handle.0) else { continue };
 
         if matches!(state.source, Source::Mesh(id, _) if modified.contains(&id)) {
             state.source = Source::None;
@@ -247,7 +251,7 @@ pub(super) fn build_hulls(
             let off_center = body.local_center_of_mass().distance(wanted.local_com);
             (body.mass() - mass).abs() > 1e-4 * mass || off_center > 1e-3 * state.length()
         };
-        if let Some(mass) = state.mass.filter(differs)
+        if let Some(mass) = state.mass.filter(|mass| body.is_dynamic() && differs(mass))
             && let Some(body) = set.bodies.get_mut(handle.0)
         {
             Body::apply_mass(mass, body, &mut colliders.colliders);

@@ -11,7 +11,8 @@ use bevy_rapier3d::{
     plugin::context::{RapierContextEntityLink, RapierRigidBodySet},
     prelude::RapierRigidBodyHandle,
 };
-use freshet_hydro::load::Surface;
+use freshet_hydro::{hull::SurfacePlane, load::Surface};
+use std::cell::Cell;
 
 /// Places along each side of the lattice under a hull: waves as long as the hull are seen, much shorter ones are not.
 const PLACES: usize = 4;
@@ -30,6 +31,8 @@ pub(super) struct Footprint {
     size: Vec2,
     places: usize,
     samples: Vec<Option<Surface>>,
+    /// The water that was found last.
+    water: Option<Entity>,
     /// Height of the body's lowest point, m.
     pub(super) lowest: f32,
 }
@@ -62,6 +65,28 @@ impl Footprint {
                 self.samples.push(water(self.min + step * Vec2::new(column as f32, row as f32)));
             }
         }
+    }
+
+    /// The water around the body.
+    pub(super) fn water(&self) -> Option<Entity> {
+        self.water
+    }
+
+    /// The plane through its corners; level, if some are dry, and nothing if all are.
+    pub(super) fn plane(&self) -> Option<SurfacePlane> {
+        let last = self.places.checked_sub(1)?;
+        let corner = |row: usize, column: usize| self.samples.get(row * self.places + column).copied().flatten();
+        let corners = [corner(0, 0), corner(0, last), corner(last, 0), corner(last, last)];
+        let count = corners.iter().flatten().count();
+        let mean = corners.iter().flatten().map(|water| water.height).sum::<f32>() / count.max(1) as f32;
+        let slope = match corners.map(|water| water.map(|water| water.height)) {
+            [Some(a), Some(b), Some(c), Some(d)] => {
+                vec2(b + d - a - c, c + d - a - b) / (2.0 * self.size.max(Vec2::splat(f32::MIN_POSITIVE)))
+            }
+            _ => Vec2::ZERO,
+        };
+        let height = mean - slope.dot(self.min + 0.5 * self.size);
+        (count > 0 && slope.is_finite()).then_some(SurfacePlane { height, slope })
     }
 
     /// Whether its corners say all.
@@ -123,7 +148,7 @@ pub(super) fn sample_water(
     bodies.par_iter_mut().for_each(|(floating, handle, link, mut state)| {
         let state = &mut *state;
         let Some(body) = contexts.get(link.0).ok().and_then(|set| set.bodies.get(handle.0)) else { return };
-        if state.form.is_none() || !body.is_dynamic() || !body.is_enabled() {
+        if state.form.is_none() || !body.is_enabled() {
             return;
         }
         let aabb = bounds(&state.solids, body.position());
@@ -134,11 +159,15 @@ pub(super) fn sample_water(
             _ => PLACES,
         };
         state.footprint.lowest = height;
+        let in_water = Cell::new(None);
         state.footprint.look_up(Rect::from_corners(aabb.mins.xz(), aabb.maxs.xz()), places, |at| {
-            let found = water.sample(Vec3::new(at.x, height, at.y)).as_ref().and_then(surface)?;
+            let sample = water.sample(Vec3::new(at.x, height, at.y))?;
+            in_water.set(Some(sample.water));
+            let found = surface(&sample)?;
             let velocity = if floating.current { found.velocity } else { Vec3::ZERO };
             Some(Surface { velocity, ..found })
         });
+        state.footprint.water = in_water.get();
     });
 }
 

@@ -131,18 +131,21 @@ pub(super) fn lend_forces(
     for (handle, link, mut state, mut buoyancy) in &mut floating {
         let Ok((mut set, config)) = contexts.get_mut(link.0) else { continue };
         let Some(body) = set.bodies.get(handle.0) else { continue };
+        state.exchanging.force = Vec3::ZERO;
         let steps = config.physics_pipeline_active && dt > 0.0;
-        if !steps || !body.is_dynamic() || !body.is_enabled() || state.form.is_none() || body.mass() <= 0.0 {
+        let is_driven = !body.is_dynamic();
+        if !steps || !body.is_enabled() || state.form.is_none() || !is_driven && body.mass() <= 0.0 {
             continue;
         }
 
         let load = load(&mut state, body, config.gravity);
         let rest = Rest::of(&load);
-        if body.is_sleeping() && !state.rest.is_disturbed(&rest, body.mass() * config.gravity.length()) {
+        if !is_driven && body.is_sleeping() && !state.rest.is_disturbed(&rest, body.mass() * config.gravity.length()) {
             continue;
         }
         state.rest = rest;
         let wrench = force(&load, body, config.gravity, dt);
+        state.exchanging.force = wrench.force - load.pressure.force;
         let height = state.footprint.at(body.center_of_mass().xz()).map(|water| water.height);
         buoyancy.set_if_neq(Buoyancy {
             volume: buoyancy.volume,
@@ -153,6 +156,9 @@ pub(super) fn lend_forces(
             water_velocity: load.water_velocity,
         });
 
+        if is_driven {
+            continue;
+        }
         let wake = body.is_sleeping()
             || (load.submerged_volume > 0.0
                 && is_moving(body, state.length(), config.gravity.length(), wrench.torque.length()));

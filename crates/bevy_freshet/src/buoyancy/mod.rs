@@ -22,6 +22,7 @@
 //! * A closed mesh within another counts as filled with water: give the outer shell of a hollow body only.
 
 mod body;
+mod exchange;
 mod floating;
 mod footprint;
 mod force;
@@ -55,9 +56,12 @@ impl Plugin for BuoyancyPlugin {
             .add_systems(
                 FixedUpdate,
                 (
-                    body::build_hulls.after(PhysicsSet::SyncBackend).before(WaterSystems::Sample),
+                    (body::build_hulls, exchange::displace)
+                        .chain()
+                        .after(PhysicsSet::SyncBackend)
+                        .before(WaterSystems::Sample),
                     footprint::sample_water.in_set(WaterSystems::Sample),
-                    force::lend_forces.in_set(WaterSystems::Force),
+                    (force::lend_forces, exchange::return_forces).chain().in_set(WaterSystems::Force),
                     (force::take_forces_back, return_to::return_bodies)
                         .chain()
                         .after(PhysicsSet::StepSimulation)

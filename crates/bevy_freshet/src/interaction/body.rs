@@ -30,11 +30,22 @@ pub(crate) struct BodyMotion {
     gradient: Mat3,
     /// The water that the body is cut by, and the local centroid (xz, m) of the section.
     pub section: Option<(Entity, Vec2)>,
+    /// The simulated water that the body exchanges volume and momentum with by its hull.
+    pub exchanges_with: Option<Entity>,
+    /// Whether that water's cells are so fine that its rings are theirs.
+    pub is_resolved: bool,
 }
 
 impl Default for BodyMotion {
     fn default() -> Self {
-        Self { last: None, velocity: Vec3::ZERO, gradient: Mat3::ZERO, section: None }
+        Self {
+            last: None,
+            velocity: Vec3::ZERO,
+            gradient: Mat3::ZERO,
+            section: None,
+            exchanges_with: None,
+            is_resolved: false,
+        }
     }
 }
 

@@ -29,6 +29,8 @@ mod silhouette;
 mod tests;
 mod touch;
 
+#[cfg(feature = "rapier")]
+pub(crate) use body::BodyMotion;
 pub use body::DisturbsWater;
 pub use disturb::Disturb;
 pub use dye::{DyesWater, absorption_from_color};

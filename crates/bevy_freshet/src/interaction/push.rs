@@ -25,24 +25,10 @@ pub(super) fn push(
             if cell.cmpge(IVec2::ZERO).all() && cell.cmplt(size.as_ivec2()).all() {
                 let share = |offset: i32| if offset == 0 { KEPT } else { 0.5 * (1.0 - KEPT) };
                 let strength = strength * share(offset.x) * share(offset.y);
-                pushes.push(Push { cell: cell.as_uvec2(), strength, velocity: silhouette.velocity });
+                pushes.push(Push { cell: cell.as_uvec2(), strength, velocity: silhouette.velocity, force: Vec2::ZERO });
             }
         }
     }
-}
-
-/// Puts what is said of one cell together: strengths add up, and velocities are averaged by them.
-pub(super) fn merge(pushes: &mut Vec<Push>) {
-    pushes.retain(|push| push.strength > 0.0 && push.strength.is_finite() && push.velocity.is_finite());
-    pushes.sort_by_key(|push| (push.cell.y, push.cell.x));
-    pushes.dedup_by(|next, kept| {
-        let same = next.cell == kept.cell;
-        if same {
-            kept.strength += next.strength;
-            kept.velocity = kept.velocity.lerp(next.velocity, next.strength / kept.strength);
-        }
-        same
-    });
 }
 
 #[cfg(test)]

@@ -109,9 +109,6 @@ pub(super) fn draw_silhouettes(
     }
     for mut water in &mut waters {
         merge(&mut water.deposits.silhouettes);
-        if let Some((_, simulated)) = &mut water.simulated {
-            push::merge(&mut simulated.pushes);
-        }
     }
 }
 
@@ -153,14 +150,21 @@ impl Pen {
         let waves = Lattice::over(water, min.xz(), max.xz(), HEIGHT_ERROR * finest);
         self.cut(parts, surface_from_world, &waves);
         let cut = self.measure()?;
-        if let (Some(raster), Some((settings, simulated))) = (simulation, &mut disturbed.simulated) {
+        let exchanges = motion.exchanges_with == Some(disturbed.entity);
+        if let (Some(raster), Some((settings, simulated))) =
+            (simulation.filter(|_| !exchanges), &mut disturbed.simulated)
+        {
             let factor = reported.clamp(disturbed.entity, "WaterSimulation::push", settings.push, 0.0..=10.0, 1.0);
             // The uniform current is added to the simulated one: bodies that drift with it push nothing.
             let relative = |cell: SilhouetteCell| SilhouetteCell { velocity: cell.velocity - water.drift, ..cell };
             let cells = self.cells(&raster, &cut, motion, water).map(relative);
             push::push(cells, factor, cut.area, raster.size, &mut simulated.pushes);
         }
-        disturbed.deposits.silhouettes.extend(self.cells(&field?, &cut, motion, water));
+        // What the simulation raises need not be raised again.
+        let raises = if exchanges && motion.is_resolved { 0.0 } else { 1.0 };
+        let field = field?;
+        let cells = self.cells(&field, &cut, motion, water);
+        disturbed.deposits.silhouettes.extend(cells.map(|cell| SilhouetteCell { draft: raises * cell.draft, ..cell }));
         Some(cut.centroid)
     }
 

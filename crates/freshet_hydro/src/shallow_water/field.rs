@@ -99,23 +99,45 @@ impl Field {
     }
 
     fn find_slopes(&mut self) {
+        self.slopes = (0..self.cells.len()).map(|index| self.slope_of(index)).collect();
+    }
+
+    /// Slope of the level in a cell.
+    fn slope_of(&self, index: usize) -> Vec2 {
         let (columns, rows) = (self.size.x as usize, self.size.y as usize);
-        let slope = |index: usize| {
-            let (column, row) = (index % columns, index / columns);
-            let here = self.cells[index];
-            if here.y <= WET {
-                return Vec2::ZERO;
-            }
-            // The level across the `axis` face of the cell `of`, if there is one without a wall.
-            let level = |exists: bool, at: usize, of: usize, axis: usize| {
-                if exists && !self.has_wall(of, axis) { beside(self.cells[at], here.x) } else { here.x }
-            };
-            let (west, north) = (index.wrapping_sub(1), index.wrapping_sub(columns));
-            let x = level(column + 1 < columns, index + 1, index, 0) - level(column > 0, west, west, 0);
-            let z = level(row + 1 < rows, index + columns, index, 1) - level(row > 0, north, north, 1);
-            Vec2::new(x, z) / (2.0 * self.cell_size)
+        let (column, row) = (index % columns, index / columns);
+        let here = self.cells[index];
+        if here.y <= WET {
+            return Vec2::ZERO;
+        }
+        // The level across the `axis` face of the cell `of`, if there is one without a wall.
+        let level = |exists: bool, at: usize, of: usize, axis: usize| {
+            if exists && !self.has_wall(of, axis) { beside(self.cells[at], here.x) } else { here.x }
         };
-        self.slopes = (0..self.cells.len()).map(slope).collect();
+        let (west, north) = (index.wrapping_sub(1), index.wrapping_sub(columns));
+        let x = level(column + 1 < columns, index + 1, index, 0) - level(column > 0, west, west, 0);
+        let z = level(row + 1 < rows, index + columns, index, 1) - level(row > 0, north, north, 1);
+        Vec2::new(x, z) / (2.0 * self.cell_size)
+    }
+
+    /// Raises the level of cells (index, by how many m), as bodies do that come into them. Each cell at most once.
+    pub fn raise(&mut self, cells: &[(usize, f32)]) {
+        let (columns, count) = (self.size.x as usize, self.cells.len());
+        for &(index, by) in cells {
+            self.cells[index].x += by;
+            if self.cells[index].y > WET {
+                self.lowest = self.lowest.min(self.cells[index].x);
+                self.highest = self.highest.max(self.cells[index].x);
+            }
+        }
+        for &(index, _) in cells {
+            let around =
+                [Some(index), index.checked_sub(1), index.checked_sub(columns), Some(index + 1), Some(index + columns)];
+            for index in around.into_iter().flatten().filter(|index| *index < count) {
+                self.slopes[index] = self.slope_of(index);
+                self.steepest = self.steepest.max(self.slopes[index].length());
+            }
+        }
     }
 
     fn find_bounds(&mut self) {

@@ -18,7 +18,7 @@ use glam::{UVec2, Vec2};
 /// It moves no volume, and water is never faster for it than the body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Push {
-    /// Column and row of the cell; each at most once.
+    /// Column and row of the cell.
     pub cell: UVec2,
     /// ½ C D/L, from 0 to 10⁶.
     pub strength: f32,
@@ -32,7 +32,8 @@ pub struct Push {
 const STRONGEST: f32 = 1e6;
 
 impl ShallowWater {
-    /// Replaces what bodies do to the water in every step from now on.
+    /// Replaces what bodies do to the water in every step from now on. What is said of one cell is put together: strengths and forces
+    /// add up, and velocities are averaged by strength.
     ///
     /// # Errors
     /// [`ShallowWaterError::Number`] if a cell is outside, a strength is negative or not below 10⁶, a force is not below that, or a velocity is not below 10 km/s.
@@ -52,11 +53,22 @@ impl ShallowWater {
             }
         }
         self.pushes.clear();
-        self.pushes.extend_from_slice(pushes);
+        self.pushes.extend(pushes.iter().filter(|push| push.strength > 0.0 || push.force != Vec2::ZERO));
+        self.pushes.sort_by_key(|push| (push.cell.y, push.cell.x));
+        self.pushes.dedup_by(|next, kept| {
+            let same = next.cell == kept.cell;
+            if same {
+                kept.strength += next.strength;
+                kept.force += next.force;
+                let share = if next.strength > 0.0 { next.strength / kept.strength } else { 0.0 };
+                kept.velocity = kept.velocity.lerp(next.velocity, share);
+            }
+            same
+        });
         Ok(())
     }
 
-    /// What bodies do to the water.
+    /// What bodies do to the water, each cell once.
     pub fn pushes(&self) -> &[Push] {
         &self.pushes
     }

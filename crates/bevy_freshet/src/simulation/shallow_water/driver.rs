@@ -1,6 +1,6 @@
 //! Keeps the simulation of every water: makes it, changes it, advances it, and says what it has come to.
 use super::{
-    ShallowFrame, ShallowWork,
+    Exchange, ShallowFrame, ShallowWork,
     control::{Asked, Pace},
     domain::{Domain, ground_below, set_edges, set_rims, set_walls, usable_area, usable_ground},
     frame::pictures,
@@ -29,9 +29,11 @@ use std::{sync::Arc, time::Duration};
 /// The simulation of a water, and the pictures of it that the surface's shader reads.
 #[derive(Component, Default)]
 pub(crate) struct Simulated {
-    simulation: Option<Box<Simulation>>,
-    /// What bodies do to its cells.
+    pub(super) simulation: Option<Box<Simulation>>,
+    /// What silhouettes do to its cells.
     pub pushes: Vec<Push>,
+    /// What floating bodies do to them.
+    pub exchange: Exchange,
     pub pictures: Option<[Handle<Image>; 2]>,
     pub(super) asked: Asked,
 }
@@ -45,7 +47,7 @@ pub(super) struct Simulation {
     flat: f32,
     ground: Option<GroundKey>,
     applied: Option<Applied>,
-    field: Arc<Field>,
+    pub field: Arc<Field>,
     /// Volume of all water, m³.
     pub volume: f64,
     pub pace: Pace,
@@ -235,8 +237,10 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
         return;
     };
     // Those of a simulation of another size are none of this one.
-    if simulation.water.set_pushes(&simulated.pushes).is_err() {
+    let pushes = [simulated.pushes.as_slice(), &simulated.exchange.forces].concat();
+    if simulation.water.set_pushes(&pushes).is_err() {
         simulated.pushes.clear();
+        simulated.exchange.forces.clear();
         _ = simulation.water.set_pushes(&[]);
     }
     simulation.area = area;

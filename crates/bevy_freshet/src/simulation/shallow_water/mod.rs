@@ -14,6 +14,7 @@
 mod control;
 mod domain;
 mod driver;
+mod exchange;
 mod frame;
 mod numbers;
 mod on_gpu;
@@ -27,6 +28,7 @@ mod tests;
 mod usable;
 
 pub(crate) use driver::Simulated;
+pub(crate) use exchange::Exchange;
 pub(crate) use frame::{GpuWork, Ground, ShallowFrame, ShallowWork, StartState};
 pub(crate) use numbers::{GpuEdge, GpuPush, GpuShallow};
 pub(crate) use returned::{Held, Returned};

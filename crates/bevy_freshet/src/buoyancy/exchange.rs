@@ -1,0 +1,145 @@
+//! What floating bodies and simulated water do to each other: bodies take up room, and what resists them is pushed along.
+//!
+//! Before the water is looked up, [`displace`] cuts every hull into columns on the cells of the water that it was in, and puts them in.
+//! The surface that a column ends at is the plane through the corners of the body's footprint: it lies outside the body, so that no
+//! column feeds on the level that it has raised itself, and waves much shorter than the body leave it as it is. After the forces are
+//! known, [`return_forces`] gives the water the opposite of all of them but the pressure, which the water answers by itself (see
+//! [`Displaced`](freshet_hydro::shallow_water::Displaced)).
+use super::body::Body;
+use crate::{
+    body::{ResolvedWater, WaterSimulation},
+    interaction::BodyMotion,
+    simulation::{Raster, Simulated},
+};
+use bevy::{
+    math::{Affine2, Affine3A},
+    prelude::*,
+};
+use bevy_rapier3d::{
+    plugin::context::{RapierContextEntityLink, RapierRigidBodySet},
+    prelude::RapierRigidBodyHandle,
+    rapier::prelude::RigidBody,
+};
+use freshet_hydro::{
+    hull::{ColumnRaster, Columns, Hull, SurfacePlane},
+    waves::WATER_DENSITY,
+};
+
+/// Time, s, within which a body that appears in the water makes room for itself.
+const APPEARING: f32 = 0.25;
+
+/// Cells that a body spans at least for its rings to be those of the simulation.
+const RESOLVED: f32 = 4.0;
+
+/// A body's part in the exchange.
+#[derive(Default)]
+pub(super) struct Exchanging {
+    /// The simulated water that it is in.
+    pub water: Option<Entity>,
+    columns: Columns,
+    /// Cells with the displaced volume per area, m.
+    depths: Vec<(UVec2, f32)>,
+    /// Share of its columns that the water has made room for.
+    share: f32,
+    /// Force of the water on the body without pressure, N.
+    pub force: Vec3,
+}
+
+/// Local (x, height over the still level, z) from world.
+fn local_from_world(water: &ResolvedWater) -> Affine3A {
+    let Affine2 { matrix2: turn, translation } = water.local_from_world;
+    let (x, z) = (turn.x_axis, turn.y_axis);
+    Affine3A::from_cols(
+        vec3(x.x, 0.0, x.y).into(),
+        Vec3::Y.into(),
+        vec3(z.x, 0.0, z.y).into(),
+        vec3(translation.x, -water.level, translation.y).into(),
+    )
+}
+
+/// A plane of the world, seen from the water.
+fn local_plane(plane: &SurfacePlane, water: &ResolvedWater) -> SurfacePlane {
+    let origin = water.world_from_local.transform_point2(Vec2::ZERO);
+    SurfacePlane {
+        height: plane.at(origin) - water.level,
+        slope: water.world_from_local.matrix2.transpose() * plane.slope,
+    }
+}
+
+impl Exchanging {
+    /// Cuts the body where the solver has it.
+    fn cut(
+        &mut self,
+        hull: &Hull,
+        body: &RigidBody,
+        surface: &SurfacePlane,
+        water: &ResolvedWater,
+        raster: ColumnRaster,
+    ) {
+        let world_from_body = Affine3A::from_rotation_translation(*body.rotation(), body.translation());
+        let from_body = local_from_world(water) * world_from_body;
+        self.columns.rasterise(hull, from_body, &local_plane(surface, water), &raster);
+    }
+
+    /// Makes room within [`APPEARING`], and at once for a body that comes from outside.
+    fn appear(&mut self, dt: f32, cell: f32) {
+        let is_dry = self.columns.volume() <= 0.0;
+        self.share = if is_dry { 1.0 } else { (self.share + dt / APPEARING).min(1.0) };
+        let per_area = self.share / (cell * cell);
+        self.depths.clear();
+        self.depths.extend(self.columns.cells().map(|(cell, volume)| (cell, volume * per_area)));
+    }
+}
+
+/// Puts all bodies into the simulated waters that they are in.
+pub(super) fn displace(
+    mut bodies: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Body, &mut BodyMotion)>,
+    contexts: Query<&RapierRigidBodySet>,
+    mut waters: Query<(&mut Simulated, &mut ResolvedWater, &WaterSimulation)>,
+    time: Res<Time>,
+) {
+    let mut any = false;
+    for (mut simulated, _, _) in &mut waters {
+        any |= simulated.take_bodies_out();
+    }
+    for (handle, link, mut state, mut motion) in &mut bodies {
+        state.exchanging.water = None;
+        (motion.exchanges_with, motion.is_resolved) = (None, false);
+        let body = contexts.get(link.0).ok().and_then(|set| set.bodies.get(handle.0));
+        let Some(body) = body.filter(|body| any && body.is_enabled()) else { continue };
+        let Body { form: Some(form), footprint, exchanging, .. } = &mut *state else { continue };
+        let (Some(entity), Some(surface)) = (footprint.water(), footprint.plane()) else { continue };
+        let Ok((mut simulated, water, settings)) = waters.get_mut(entity) else { continue };
+        let Some(Raster { origin, cell, size }) = simulated.raster().filter(|_| settings.push > 0.0) else { continue };
+        let raster = ColumnRaster { origin, cell, size };
+        exchanging.cut(&form.hull, body, &surface, &water, raster);
+        exchanging.appear(time.delta_secs(), raster.cell);
+        exchanging.water = Some(entity);
+        motion.exchanges_with = Some(entity);
+        motion.is_resolved = form.hull.length() >= RESOLVED * raster.cell;
+        let level = local_plane(&surface, &water);
+        let mut displacement = std::mem::take(&mut simulated.exchange.displacement);
+        displacement.add(exchanging.depths.iter().copied(), |cell| simulated.room(cell, |place| level.at(place)));
+        simulated.exchange.displacement = displacement;
+    }
+    for (mut simulated, mut water, _) in &mut waters {
+        simulated.put_bodies_in(&mut water);
+    }
+}
+
+/// Hands the waters what their bodies feel of them, the other way round.
+pub(super) fn return_forces(
+    bodies: Query<&Body>,
+    mut waters: Query<(&mut Simulated, &ResolvedWater, &WaterSimulation)>,
+) {
+    for state in &bodies {
+        let exchanging = &state.exchanging;
+        let Some((mut simulated, water, settings)) = exchanging.water.and_then(|water| waters.get_mut(water).ok())
+        else {
+            continue;
+        };
+        let factor = if settings.push.is_finite() { settings.push.clamp(0.0, 10.0) } else { 1.0 };
+        let force = water.local_from_world.transform_vector2(exchanging.force.xz());
+        simulated.push_back(-factor / WATER_DENSITY * force, &exchanging.depths);
+    }
+}
