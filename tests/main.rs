@@ -10,6 +10,8 @@ mod buoyancy;
 mod buoyancy_cost;
 #[cfg(feature = "rapier")]
 mod endurance;
+#[cfg(feature = "rapier")]
+mod exchange;
 mod features;
 mod fields;
 mod flow;

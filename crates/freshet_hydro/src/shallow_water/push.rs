@@ -102,3 +102,21 @@ impl ShallowWater {
 fn kept_of_difference(rate: f32, difference: f32) -> f32 {
     2.0 / (1.0 + (1.0 + 4.0 * rate * difference).sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Grid;
+    use glam::uvec2;
+
+    #[test]
+    fn bodies_that_meet_in_a_cell_push_it_together() {
+        let bed = Grid::new(uvec2(4, 4), 1.0, vec![-1.0; 16]).expect("a valid shape");
+        let mut water = ShallowWater::new(&bed).expect("a finite bed");
+        let push = |strength, velocity, force| Push { cell: uvec2(2, 1), strength, velocity, force };
+        let still = Push { cell: uvec2(1, 1), ..Push::default() };
+        let both = [push(1.0, Vec2::X, Vec2::Y), still, push(3.0, Vec2::Y, Vec2::Y), push(0.0, Vec2::X, Vec2::X)];
+        water.set_pushes(&both).expect("sane");
+        assert_eq!(water.pushes(), [push(4.0, Vec2::new(0.25, 0.75), Vec2::new(1.0, 2.0))]);
+    }
+}

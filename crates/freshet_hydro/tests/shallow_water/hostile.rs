@@ -3,7 +3,8 @@ use super::cases::{land, still};
 use freshet_hydro::{
     grid::{Grid, GridError},
     shallow_water::{
-        CLOSED, DomainSide, Edge, EdgePart, PointSource, Push, Restored, Series, ShallowWater, ShallowWaterError,
+        CLOSED, Displaced, DomainSide, Edge, EdgePart, PointSource, Push, Restored, Series, ShallowWater,
+        ShallowWaterError,
     },
 };
 use glam::{UVec2, Vec2};
@@ -196,6 +197,12 @@ fn numbers_out_of_range_are_refused() {
         };
         assert!(water.set_pushes(&[push(number, 1.0)]).is_err() && water.set_pushes(&[push(1.0, number)]).is_err());
     }
+    for number in [f32::NAN, f32::INFINITY, -1.0] {
+        assert!(water.set_displaced(&[Displaced { cell: UVec2::ZERO, depth: number }]).is_err(), "{number}");
+        let force = Vec2::new(0.0, if number < 0.0 { 1e7 } else { number });
+        assert!(water.set_pushes(&[Push { force, ..Default::default() }]).is_err(), "{number}");
+    }
+    assert!(water.set_displaced(&[Displaced { cell: UVec2::splat(1000), depth: 1.0 }]).is_err());
     assert!(water.set_pushes(&[Push { cell: UVec2::splat(1000), ..Default::default() }]).is_err());
     for number in [f32::NAN, f32::INFINITY] {
         assert!(water.set_rain(number).is_err(), "{number}");
