@@ -143,3 +143,58 @@ pub(super) fn return_forces(
         simulated.push_back(-factor / WATER_DENSITY * force, &exchanging.depths);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prelude::*;
+    use bevy::{time::TimeUpdateStrategy, transform::TransformPlugin};
+    use bevy_rapier3d::prelude::*;
+    use std::time::Duration;
+
+    /// Momentum of the water and of all bodies along x and z, kg·m/s.
+    fn momentum(app: &mut App) -> Vec2 {
+        let mut waters = app.world_mut().query::<&Simulated>();
+        let water = waters.single(app.world()).expect("a water").momentum();
+        let mut sets = app.world_mut().query::<&RapierRigidBodySet>();
+        let set = sets.single(app.world()).expect("a world");
+        let bodies: Vec3 = set.bodies.iter().map(|(_, body)| body.mass() * body.linvel()).sum();
+        (f64::from(WATER_DENSITY) * water).as_vec2() + bodies.xz()
+    }
+
+    #[test]
+    fn what_a_body_loses_the_water_gains_within_a_tenth() {
+        let step = Duration::from_secs_f64(1.0 / 60.0);
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default()))
+            .init_asset::<Mesh>()
+            .insert_resource(Time::<Fixed>::from_duration(step))
+            .insert_resource(TimeUpdateStrategy::ManualDuration(step))
+            .insert_resource(TimestepMode::Fixed { dt: 1.0 / 60.0, substeps: 1 })
+            .add_plugins((RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(), WaterPlugin));
+        app.finish();
+        app.cleanup();
+        let settings = WaterSimulation { cell_size: 0.25, manning: 0.0, ..default() };
+        app.world_mut().spawn((Water::new(Vec2::splat(40.0)), WaterWaves::still(), settings));
+        let body = (
+            bevy_rapier3d::prelude::RigidBody::Dynamic,
+            Collider::cuboid(1.0, 0.4, 0.8),
+            Floating::with_density(500.0),
+            Velocity::zero(),
+            Transform::default(),
+        );
+        let body = app.world_mut().spawn(body).id();
+        (0..600).for_each(|_| app.update());
+        let before = momentum(&mut app).x;
+        let given = 1.5 * 500.0 * 2.0 * 0.8 * 1.6;
+        app.world_mut().get_mut::<Velocity>(body).expect("a body").linear.x = 1.5;
+        for second in 1..=3 {
+            (0..60).for_each(|_| app.update());
+            let gone = 1.0 - (momentum(&mut app).x - before) / given;
+            let left = app.world().get::<Velocity>(body).expect("a body").linear.x / 1.5;
+            println!("after {second} s the body has {left:.3} of its momentum, and {gone:.4} is gone");
+            // The hull's pressure and that of the raised bed are summed over different places.
+            assert!(left < 0.6 && gone.abs() < 0.1);
+        }
+    }
+}

@@ -80,3 +80,14 @@ impl Simulated {
         }
     }
 }
+
+#[cfg(test)]
+impl Simulated {
+    /// Volume times velocity of all water, m⁴/s.
+    pub fn momentum(&self) -> bevy::math::DVec2 {
+        let Some(simulation) = self.simulation.as_deref() else { return bevy::math::DVec2::ZERO };
+        let area = f64::from(simulation.water.cell_size()).powi(2);
+        let discharges = simulation.water.conserved().map(|[_, x, z, _]| bevy::math::dvec2(x.into(), z.into()));
+        area * discharges.sum::<bevy::math::DVec2>()
+    }
+}
