@@ -25,6 +25,8 @@ mod optics;
 mod reflection;
 mod river;
 mod robustness;
+#[cfg(feature = "rapier")]
+mod rough_river;
 mod running;
 mod shore;
 mod simulated;
