@@ -5,6 +5,7 @@
 //!
 //! A hull comes from a mesh ([`Hull::new`]), from a shape ([`Hull::ball`], [`Hull::capsule`], …) or from several hulls
 //! ([`Hull::union`]); [`Hull::simplified`] and [`Hull::refined`] change how many triangles it has, and not what it holds.
+//! [`Hull::load`] is what the water does to it, [`Hull::flotation`] and [`Hull::waterline`] how it lies in the water.
 //!
 //! # Symbols
 //!
@@ -13,6 +14,7 @@
 mod added_mass;
 mod convex;
 mod faces;
+mod flotation;
 mod inside;
 mod lanes;
 mod load;
@@ -25,9 +27,11 @@ mod round_cuboid;
 mod shapes;
 mod simplify;
 mod union;
+mod waterline;
 mod weld;
 
 pub use added_mass::AddedMass;
+pub use flotation::{Flotation, Waterplane};
 pub use load::HullPoint;
 pub use resistance::{HullDrag, VISCOSITY, friction_coefficient};
 pub use union::Union;
