@@ -42,10 +42,10 @@ fn setup(mut commands: Commands, canvas: Res<Canvas>) {
     // Rings need fine cells; a window of them goes with the camera.
     let interaction = WaterInteraction { cell: 0.15, wavelength: 1.6, decay: 8.0, ..default() };
     let waves = WaterWaves::wind(3.5, 400.0, vec2(0.6, 1.0));
-    commands.spawn((Water::new(Vec2::splat(1200.0)), waves, WaterOptics::LAKE, interaction));
+    commands.spawn((Water::new(Vec2::splat(1200.0)), waves, WaterOptics::OCEAN, interaction));
     let shadows = CascadeShadowConfigBuilder { maximum_distance: 60.0, ..default() }.build();
-    commands.spawn((Sky::with_sun(32.0, 130.0), DirectionalLight { shadow_maps_enabled: true, ..default() }, shadows));
-    commands.spawn((Camera3d::default(), Hdr, SkyView::default(), canvas.target(), behind(&START, 0.0)));
+    commands.spawn((Sky::with_sun(38.0, 130.0), DirectionalLight { shadow_maps_enabled: true, ..default() }, shadows));
+    commands.spawn((Camera3d::default(), Hdr, SkyView::default(), Chase::default(), canvas.target()));
 }
 
 fn spawn_boat(
@@ -110,25 +110,27 @@ fn begin_anew(keys: Res<ButtonInput<KeyCode>>, boat: Single<(&mut Transform, &mu
     }
 }
 
-/// A camera behind a boat, which looks at where it goes. `yaw` is the boat's, rad: the camera neither rolls nor pitches with it.
-fn behind(boat: &Transform, yaw: f32) -> Transform {
-    let around = Quat::from_rotation_y(yaw);
-    Transform::from_translation(boat.translation.with_y(0.0) + around * vec3(0.0, 3.4, 9.5))
-        .looking_at(boat.translation.with_y(0.0) + around * vec3(0.0, 0.6, -3.0), Vec3::Y)
+/// A camera that comes after the boat.
+#[derive(Component, Default)]
+struct Chase {
+    /// The way that it looks, rad: it neither rolls nor pitches with the boat.
+    yaw: f32,
 }
 
-/// The camera comes round behind the boat within a second or two.
+/// Comes round behind the boat within a second or two, and looks at where it goes.
 fn follow(
     boat: Single<&Transform, With<Helm>>,
-    mut camera: Single<&mut Transform, (With<Camera3d>, Without<Helm>)>,
+    mut camera: Single<(&mut Chase, &mut Transform), Without<Helm>>,
     time: Res<Time>,
-    mut yaw: Local<f32>,
 ) {
+    let (chase, pose) = &mut *camera;
     let (heading, ..) = boat.rotation.to_euler(EulerRot::YXZ);
     // The shorter way round, by a share that does not depend on how long frames are.
-    let behindhand = Rot2::radians(*yaw).angle_to(Rot2::radians(heading));
-    *yaw += behindhand * (1.0 - ops::exp(-1.2 * time.delta_secs()));
-    **camera = behind(&boat, *yaw);
+    let behindhand = Rot2::radians(chase.yaw).angle_to(Rot2::radians(heading));
+    chase.yaw += behindhand * (1.0 - ops::exp(-1.5 * time.delta_secs()));
+    let (around, place) = (Quat::from_rotation_y(chase.yaw), boat.translation.with_y(0.0));
+    **pose = Transform::from_translation(place + around * vec3(0.0, 3.2, 9.0))
+        .looking_at(place + around * vec3(0.0, 0.7, -3.0), Vec3::Y);
 }
 
 /// The propeller beats air into the water.

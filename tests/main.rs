@@ -9,9 +9,9 @@ mod boat;
 #[cfg(feature = "rapier")]
 mod buoyancy;
 #[cfg(feature = "rapier")]
-mod buoyancy_gizmos;
-#[cfg(feature = "rapier")]
 mod buoyancy_cost;
+#[cfg(feature = "rapier")]
+mod buoyancy_gizmos;
 #[cfg(feature = "rapier")]
 mod endurance;
 mod features;

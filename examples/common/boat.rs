@@ -9,13 +9,13 @@ pub const LENGTH: f32 = 5.6;
 /// Sections of the hull from the stern to the bow.
 pub const SECTIONS: usize = 17;
 /// Where the centre of mass is, m: engine and ballast lie low and aft of the middle.
-const CENTER_OF_MASS: Vec3 = vec3(0.0, -0.1, 0.42);
+const CENTER_OF_MASS: Vec3 = vec3(0.0, -0.1, 0.72);
 const MASS: f32 = 950.0;
 
 /// Where the propeller is, m: below the stern, on the keel's line.
 pub const PROPELLER: Vec3 = vec3(0.0, -0.42, 2.85);
 /// Thrust with full throttle, N.
-const THRUST: f32 = 3600.0;
+pub const THRUST: f32 = 3600.0;
 /// Most of it astern: blades are made to go ahead.
 const ASTERN: f32 = 0.5;
 /// Area of the propeller's disc, m²: 40 cm across.
