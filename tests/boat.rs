@@ -98,8 +98,7 @@ fn it_turns_the_way_of_the_rudder_and_stays_afloat() {
         let turn = trial.run(30.0, 1.0, rudder);
         // A turn to starboard takes the heading down. In a second it is well under way.
         assert!(rudder * (turn[59].heading - start.heading) < -0.1, "{:?}", turn[59]);
-        let right = Vec3::X * (turn[240].place.x - start.place.x);
-        assert!(right.x * rudder > 0.0, "{:?}", turn[240]);
+        assert!(rudder * (turn[240].place.x - start.place.x) > 1.0, "{:?}", turn[240]);
         let heel = turn.iter().map(|moment| moment.heel.abs()).fold(0.0, f32::max).to_degrees();
         println!("rudder {rudder}: heel up to {heel}°, at last {:?}", last(&turn));
         assert!(heel < 25.0);
@@ -119,10 +118,10 @@ fn the_mirrored_rudder_takes_the_mirrored_way() {
     };
     let (port, starboard) = (path(-1.0), path(1.0));
     let way: f32 = starboard.windows(2).map(|pair| pair[0].place.distance(pair[1].place)).sum();
-    for (port, starboard) in port.iter().zip(&starboard) {
-        let off = port.place.distance(starboard.place * vec3(-1.0, 1.0, 1.0));
-        assert!(off < 0.03 * way, "{off} m off after a way of {way} m");
-    }
+    let off = |(a, b): (&Moment, &Moment)| a.place.distance(b.place * vec3(-1.0, 1.0, 1.0));
+    let most = port.iter().zip(&starboard).map(off).fold(0.0, f32::max);
+    println!("up to {most} m off on a way of {way} m");
+    assert!(most < 0.03 * way, "{most} m off on a way of {way} m");
 }
 
 /// The picture of the example repeats.

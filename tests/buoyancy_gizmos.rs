@@ -1,7 +1,7 @@
 //! Debug drawing of floating bodies, measured in pictures.
 
 use crate::{
-    buoyancy::LEVEL,
+    buoyancy::{LEVEL, is_asleep},
     stage::{Picture, Stage, still_water},
 };
 use bevy::{camera::ScalingMode, prelude::*};
@@ -117,7 +117,7 @@ fn every_model_and_a_sleeper_show_their_waterline() {
     let mut scene = Scene::new(Floating::with_density(499.0));
     scene.only_waterlines(true);
     scene.stage.run(20.0);
-    assert!(scene.stage.app.world().get::<Sleeping>(scene.body).is_none_or(|sleeping| sleeping.sleeping));
+    assert!(is_asleep(&mut scene.stage.app, scene.body));
     assert!(!scene.drawn().is_empty());
 }
 

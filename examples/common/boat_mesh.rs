@@ -14,7 +14,6 @@ const DECK: Srgba = Srgba::rgb(0.62, 0.43, 0.24);
 /// The closed surface of the hull: bottom, sides and rails from stern to bow, and a deck over all, so that no water is seen within.
 pub fn hull_mesh() -> Mesh {
     let sections: Vec<[Vec3; 4]> = (0..SECTIONS).map(section).collect();
-    let stern = sections[0];
     let mirrored = |point: Vec3| point * vec3(-1.0, 1.0, 1.0);
     // Each is a strip between two lines of points, smooth along itself, and has an edge towards the next.
     let line = |k: usize| sections.iter().map(|section| section[k]).collect::<Vec<_>>();
@@ -27,13 +26,10 @@ pub fn hull_mesh() -> Mesh {
     }
     strips.push((sheer.clone(), port(&sheer), DECK));
     // The transom, and the stem that closes the last section.
-    let transom = |[keel, chine, rail, sheer]: [Vec3; 4]| {
-        [vec![keel, chine, rail, sheer], vec![keel, mirrored(chine), mirrored(rail), mirrored(sheer)]]
-    };
-    let [starboard, other] = transom(stern);
-    strips.push((other, starboard, SIDE));
-    let [starboard, other] = transom(sections[SECTIONS - 1]);
-    strips.push((starboard, other, RAIL));
+    // The transom closes the stern, and a narrow stem the bow.
+    let (stern, bow) = (sections[0], sections[SECTIONS - 1]);
+    strips.push((stern.to_vec(), port(&stern), SIDE));
+    strips.push((port(&bow), bow.to_vec(), RAIL));
 
     let mut strips = strips.into_iter().map(|(a, b, color)| strip(&a, &b, color));
     let first = strips.next().unwrap_or_else(|| Cuboid::default().into());
