@@ -129,8 +129,8 @@ fn follow(
     let behindhand = Rot2::radians(chase.yaw).angle_to(Rot2::radians(heading));
     chase.yaw += behindhand * (1.0 - ops::exp(-1.5 * time.delta_secs()));
     let (around, place) = (Quat::from_rotation_y(chase.yaw), boat.translation.with_y(0.0));
-    **pose = Transform::from_translation(place + around * vec3(0.0, 4.6, 10.5))
-        .looking_at(place + around * vec3(0.0, 0.0, -1.5), Vec3::Y);
+    **pose = Transform::from_translation(place + around * vec3(0.0, 4.0, 12.5))
+        .looking_at(place + around * vec3(0.0, 0.6, -4.0), Vec3::Y);
 }
 
 /// The propeller beats air into the water.
@@ -138,7 +138,7 @@ fn churn(boat: Single<(&Transform, &Helm)>, water: WaterQuery, time: Res<Time>, 
     let (pose, helm) = *boat;
     let place = pose.transform_point(boat::PROPELLER);
     if water.sample(place).is_some_and(|water| water.height > place.y) {
-        let foam = 2.5 * helm.throttle.abs() * time.delta_secs();
+        let foam = 2.0 * helm.throttle.abs() * time.delta_secs();
         disturb.write(Disturb::at(place, 0.3).with_foam(foam));
     }
 }

@@ -65,7 +65,8 @@ impl Plugin for BuoyancyGizmosPlugin {
 pub struct BuoyancyGizmos {
     /// Draws all floating bodies. Default `false`.
     pub draw_all: bool,
-    /// Colour of the line where the hull's triangles cut the water that the forces used. Default aqua.
+    /// Colour of the line where the hull's triangles cut the water that the forces used. Default aqua. Where colliders overlap the lines of
+    /// each go on within the other.
     pub waterline: Option<Color>,
     /// Colour of the arrow of Archimedes' push ρ g V, at the centre of buoyancy. Default blue.
     pub buoyancy: Option<Color>,
