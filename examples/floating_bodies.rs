@@ -1,5 +1,7 @@
 //! Every shape that floats, on a gentle sea: change their density with the arrow keys (or, with the feature `panel`, by a slider).
 //!
+//! G shows waterlines, forces, centres of buoyancy and metacentres.
+//!
 //! A hull is cut by the water triangle by triangle, so each body lies as deep and as level as Archimedes wants it: the cube
 //! turns a corner up, the cone points down or up by its density, and the ring stays flat.
 mod common;
@@ -32,7 +34,8 @@ fn main() -> AppExit {
     .insert_resource(TimestepMode::Fixed { dt: common::FRAME as f32, substeps: 1 })
     .insert_resource(Density(500.0))
     .add_systems(Startup, (setup, spawn_shapes, spawn_rafts))
-    .add_systems(Update, (press_keys, weigh.run_if(resource_changed::<Density>)).chain());
+    .add_systems(Update, (press_keys, weigh.run_if(resource_changed::<Density>)).chain())
+    .add_systems(Update, show_forces);
     #[cfg(feature = "panel")]
     app.add_plugins(bevy_freshet::panel::WaterPanelPlugin::default())
         .add_systems(bevy_egui::EguiPrimaryContextPass, slide);
@@ -132,6 +135,13 @@ fn press_keys(keys: Res<ButtonInput<KeyCode>>, time: Res<Time>, mut density: Res
     let way = f32::from(keys.pressed(KeyCode::ArrowUp)) - f32::from(keys.pressed(KeyCode::ArrowDown));
     if way != 0.0 {
         density.0 = (density.0 + 300.0 * way * time.delta_secs()).clamp(20.0, 1500.0);
+    }
+}
+
+fn show_forces(keys: Res<ButtonInput<KeyCode>>, mut gizmos: ResMut<GizmoConfigStore>) {
+    if keys.just_pressed(KeyCode::KeyG) {
+        let shown = gizmos.config_mut::<BuoyancyGizmos>().1;
+        shown.draw_all = !shown.draw_all;
     }
 }
 

@@ -62,7 +62,7 @@ fn solver_body<T>(
     look(set.bodies.get(handle).unwrap())
 }
 
-fn is_asleep(app: &mut App, entity: Entity) -> bool {
+pub fn is_asleep(app: &mut App, entity: Entity) -> bool {
     solver_body(app, entity, |body| body.is_sleeping())
 }
 

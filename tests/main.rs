@@ -5,9 +5,13 @@ mod said;
 mod stage;
 
 #[cfg(feature = "rapier")]
+mod boat;
+#[cfg(feature = "rapier")]
 mod buoyancy;
 #[cfg(feature = "rapier")]
 mod buoyancy_cost;
+#[cfg(feature = "rapier")]
+mod buoyancy_gizmos;
 #[cfg(feature = "rapier")]
 mod endurance;
 #[cfg(feature = "rapier")]

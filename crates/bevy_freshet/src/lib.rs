@@ -36,7 +36,7 @@ pub use schedule::WaterSystems;
 /// What an app with water usually needs.
 pub mod prelude {
     #[cfg(feature = "rapier")]
-    pub use crate::buoyancy::{Buoyancy, BuoyancyModel, Floating, ReturnTo, Weight};
+    pub use crate::buoyancy::{Buoyancy, BuoyancyGizmos, BuoyancyModel, Floating, ReturnTo, ShowBuoyancyGizmo, Weight};
     pub use crate::{
         WaterPlugin, WaterSystems,
         bed::BedShading,

@@ -9,6 +9,8 @@
 //! 3. [`WaterSystems::Force`]: pressure, resistance and added mass ([`freshet_hydro::load`]) are lent to the solver, for one
 //!    step: after it they are taken back, so that they never add up and a game's own `ExternalForce` keeps its value and its effect.
 //!
+//! [`BuoyancyGizmos`] draw what comes of it.
+//!
 //! The forces go to the solver's body itself, not through the component `ExternalForce`: writing that one wakes the
 //! body each time, and a body that floats would never sleep.
 //!
@@ -27,10 +29,12 @@ mod floating;
 mod footprint;
 mod force;
 mod form;
+mod gizmos;
 mod return_to;
 mod solid;
 
 pub use floating::{Buoyancy, BuoyancyModel, Floating, Weight};
+pub use gizmos::{BuoyancyGizmos, ShowBuoyancyGizmo};
 pub use return_to::ReturnTo;
 
 use crate::{report::Reported, schedule::WaterSystems};
@@ -44,7 +48,8 @@ pub struct BuoyancyPlugin;
 
 impl Plugin for BuoyancyPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Reported>()
+        app.add_plugins(gizmos::BuoyancyGizmosPlugin)
+            .init_resource::<Reported>()
             .add_message::<AssetEvent<Mesh>>()
             .configure_sets(
                 FixedUpdate,

@@ -1,5 +1,6 @@
 //! What the water does to faces that are wholly under it, eight at a time.
 use super::{
+    flotation::Waterplane,
     lanes::{LANES, Lanes, Vectors},
     load::HullPoint,
     resistance::FaceDrag,
@@ -241,23 +242,29 @@ impl Sums {
         }
     }
 
-    /// A point of the waterplane at (x, z) answers y with −ρ g y, at the lever r × ŷ = (−z, 0, x). The area in which the surface cuts
-    /// the hull is what the wet faces, seen from above, lack to a closed surface.
-    fn add_stiffness(&self, load: &mut Load, weight: f32) {
+    /// The area in which the surface cuts the hull, seen from the centre of mass: what the wet faces, seen from above, lack to a closed
+    /// surface. None for hulls that are wholly submerged.
+    pub fn waterplane(&self) -> Option<Waterplane> {
         let area = self.plane.sum();
         // Wholly submerged hulls have none but what rounding leaves.
         if area <= 1e-5 * self.area.sum() {
-            return;
+            return None;
         }
-        load.waterplane_area = area;
-        let mean = Vec2::from_array(self.plane_first.map(Lanes::sum)) / area;
+        let centre = Vec2::from_array(self.plane_first.map(Lanes::sum)) / area;
         let [xx, zz, xz] = self.plane_second.map(Lanes::sum);
         // About the middle of the waterplane, and never less than none.
-        let xx = (xx - area * mean.x * mean.x).max(0.0);
-        let zz = (zz - area * mean.y * mean.y).max(0.0);
+        let xx = (xx - area * centre.x * centre.x).max(0.0);
+        let zz = (zz - area * centre.y * centre.y).max(0.0);
         let most = (xx * zz).sqrt();
-        let xz = (xz - area * mean.x * mean.y).clamp(-most, most);
-        load.stiffness.add_along(weight * area, Vec3::Y, Vec3::new(mean.x, 0.0, mean.y));
+        let xz = (xz - area * centre.x * centre.y).clamp(-most, most);
+        Some(Waterplane { area, centre, second_moments: [xx, zz, xz] })
+    }
+
+    /// A point of the waterplane at (x, z) answers y with −ρ g y, at the lever r × ŷ = (−z, 0, x).
+    fn add_stiffness(&self, load: &mut Load, weight: f32) {
+        let Some(Waterplane { area, centre, second_moments: [xx, zz, xz] }) = self.waterplane() else { return };
+        load.waterplane_area = area;
+        load.stiffness.add_along(weight * area, Vec3::Y, Vec3::new(centre.x, 0.0, centre.y));
         let turned = Mat3::from_cols(Vec3::new(zz, 0.0, -xz), Vec3::ZERO, Vec3::new(-xz, 0.0, xx));
         load.stiffness.angular += turned * weight;
     }

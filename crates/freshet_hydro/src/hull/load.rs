@@ -17,6 +17,9 @@ use crate::load::{BodyState, Fluid, Load, Surface};
 use glam::{Mat3, Vec2, Vec3};
 use pulp::{Arch, Simd, WithSimd};
 
+/// Share of its volume below which a hull counts as dry: less is rounding.
+pub(super) const LEAST_SHARE: f32 = 1e-9;
+
 /// What is known of a point of a hull in a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct HullPoint {
@@ -50,12 +53,12 @@ impl Hull {
     }
 
     /// What all faces under water add up to. Not generic, so that it is compiled here, whoever calls it and however that is compiled.
-    fn wetted(&self, points: &[HullPoint], faces: Faces) -> Sums {
+    pub(super) fn wetted(&self, points: &[HullPoint], faces: Faces) -> Sums {
         Arch::new().dispatch(Wetted { hull: self, points, faces })
     }
 
     /// Looks up the water at all points; nothing if there is none.
-    fn look_up(
+    pub(super) fn look_up(
         &self,
         body: &BodyState,
         points: &mut Vec<HullPoint>,
@@ -98,15 +101,11 @@ impl Hull {
         let weight = fluid.density * fluid.gravity;
         let mut load = sums.load(weight);
         load.submerged_volume = load.submerged_volume.min(self.volume);
-        if load.submerged_volume <= 1e-9 * self.volume {
+        if load.submerged_volume <= LEAST_SHARE * self.volume {
             return Load::default();
         }
         // The water that moves with the hull is around its submerged part: where the push acts, and as deep as its mean depth.
-        let (force, torque) = sums.push();
-        let y = around.height - sums.depths(around.base) / force.y;
-        let centre = Vec3::new((torque.z + y * force.x) / force.y, y, (y * force.z - torque.x) / force.y);
-        // Where some of the water is missing the forces do not balance: never further out than the hull reaches.
-        let centre = centre.clamp(around.least, around.most);
+        let centre = around.centre_of_buoyancy(sums);
         // A hull that is wholly submerged, or nearly, loses its push as well when it comes out, however little its waterplane says now.
         let secant = load.pressure.force.y / around.deepest - load.stiffness.linear.y_axis.y;
         if secant > 0.0 {
@@ -123,18 +122,29 @@ impl Hull {
 
 /// The water around a hull.
 #[derive(Default)]
-struct Around {
+pub(super) struct Around {
     /// Mean height over the centre of mass, m.
     height: f32,
     /// Mean velocity, m/s.
     velocity: Vec3,
     /// Depth of the highest point, m; 0 if any is dry.
-    base: f32,
+    pub base: f32,
     /// Depth of the lowest point, m.
     deepest: f32,
     /// The box of the points that have water, from the centre of mass, m.
     least: Vec3,
     most: Vec3,
+}
+
+impl Around {
+    /// Where the push of the pressure acts, as deep as the mean depth of the water displaced; from the centre of mass, m.
+    pub fn centre_of_buoyancy(&self, sums: &Sums) -> Vec3 {
+        let (force, torque) = sums.push();
+        let y = self.height - sums.depths(self.base) / force.y;
+        let centre = Vec3::new((torque.z + y * force.x) / force.y, y, (y * force.z - torque.x) / force.y);
+        // Where some of the water is missing the forces do not balance: never further out than the hull reaches.
+        centre.clamp(self.least, self.most)
+    }
 }
 
 /// The triangles of a hull, cut by the surface; compiled once for every set of vector instructions.
@@ -162,14 +172,12 @@ impl WithSimd for Wetted<'_> {
 impl Wetted<'_> {
     /// Adds what is under water of a triangle.
     #[inline(always)]
-    fn add(&mut self, [a, b, c]: [&HullPoint; 3], sign: f32) {
-        // Turned so that one that is different from the other two comes first.
-        let [a, b, c] = match [a, b, c].map(|corner| corner.depth > 0.0) {
-            [false, false, false] => return,
-            [true, true, true] => return self.faces.push([a, b, c], sign),
-            [true, false, false] | [false, true, true] => [a, b, c],
-            [false, true, false] | [true, false, true] => [b, c, a],
-            [false, false, true] | [true, true, false] => [c, a, b],
+    fn add(&mut self, corners: [&HullPoint; 3], sign: f32) {
+        let Some([a, b, c]) = odd_first(corners) else {
+            if corners[0].depth > 0.0 {
+                self.faces.push(corners, sign);
+            }
+            return;
         };
         let pieces = if a.depth > 0.0 { [[*a, cut(a, b), cut(a, c)]; 2] } else { rest(a, b, c) };
         // A tip is one piece, and what is left without one are two.
@@ -180,6 +188,17 @@ impl Wetted<'_> {
     }
 }
 
+/// A triangle that the surface cuts, turned so that the corner that is alone wet, or alone dry, comes first.
+#[inline(always)]
+pub(super) fn odd_first([a, b, c]: [&HullPoint; 3]) -> Option<[&HullPoint; 3]> {
+    match [a, b, c].map(|corner| corner.depth > 0.0) {
+        [false, false, false] | [true, true, true] => None,
+        [true, false, false] | [false, true, true] => Some([a, b, c]),
+        [false, true, false] | [true, false, true] => Some([b, c, a]),
+        [false, false, true] | [true, true, false] => Some([c, a, b]),
+    }
+}
+
 /// What is under water of a triangle of which only `a` is dry.
 fn rest(a: &HullPoint, b: &HullPoint, c: &HullPoint) -> [[HullPoint; 3]; 2] {
     let (before, after) = (cut(b, a), cut(c, a));
@@ -187,7 +206,7 @@ fn rest(a: &HullPoint, b: &HullPoint, c: &HullPoint) -> [[HullPoint; 3]; 2] {
 }
 
 /// Where the edge from a wet to a dry point meets the surface.
-fn cut(wet: &HullPoint, dry: &HullPoint) -> HullPoint {
+pub(super) fn cut(wet: &HullPoint, dry: &HullPoint) -> HullPoint {
     let t = wet.depth / (wet.depth - dry.depth);
     HullPoint { arm: wet.arm.lerp(dry.arm, t), depth: 0.0, velocity: wet.velocity.lerp(dry.velocity, t) }
 }

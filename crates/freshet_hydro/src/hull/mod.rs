@@ -5,6 +5,7 @@
 //!
 //! A hull comes from a mesh ([`Hull::new`]), from a shape ([`Hull::ball`], [`Hull::capsule`], …) or from several hulls
 //! ([`Hull::union`]); [`Hull::simplified`] and [`Hull::refined`] change how many triangles it has, and not what it holds.
+//! [`Hull::load`] is what the water does to it, [`Hull::flotation`] and [`Hull::waterline`] how it lies in the water.
 //!
 //! # Symbols
 //!
@@ -14,6 +15,7 @@ mod added_mass;
 mod columns;
 mod convex;
 mod faces;
+mod flotation;
 mod inside;
 mod lanes;
 mod load;
@@ -26,10 +28,12 @@ mod round_cuboid;
 mod shapes;
 mod simplify;
 mod union;
+mod waterline;
 mod weld;
 
 pub use added_mass::AddedMass;
 pub use columns::{ColumnRaster, Columns, SurfacePlane};
+pub use flotation::{Flotation, Waterplane};
 pub use load::HullPoint;
 pub use resistance::{HullDrag, VISCOSITY, friction_coefficient};
 pub use union::Union;

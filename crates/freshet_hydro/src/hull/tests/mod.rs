@@ -1,6 +1,7 @@
 //! What a hull is said to hold, compared with what solids are known to hold.
 
 mod combining;
+mod flotation;
 mod mesh;
 mod resampling;
 mod shapes;
