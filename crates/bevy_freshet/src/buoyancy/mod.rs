@@ -19,7 +19,8 @@
 //! * bevy_rapier 0.36 writes back a wrong `Transform` for bodies below a *rotated* parent (its `writeback_rigid_bodies`
 //!   scales after rotating); moved and scaled parents are right, and the solver's own pose always is.
 //! * Simulated water feels a body's drag (`WaterSimulation::push`), and not yet the room that it takes.
-//! * A closed mesh within another counts as filled with water: give the outer shell of a hollow body only.
+//! * A mesh holds what its outermost closed shells enclose ([`Hull::new`](freshet_hydro::hull::Hull::new)): sealed cavities stay dry for ever
+//!   and displace water, and what is open stays filled, so that neither leaks.
 
 mod body;
 mod floating;
