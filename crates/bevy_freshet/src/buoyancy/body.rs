@@ -1,6 +1,7 @@
 //! A floating body: its hull, built from its colliders or its mesh, and the mass that follows from it.
 
 use super::{
+    contact::{Contact, Felt},
     floating::{Buoyancy, BuoyancyModel, Floating, Weight},
     footprint::Footprint,
     force::{Lent, Rest},
@@ -40,6 +41,10 @@ pub(crate) struct Body {
     pub(super) lent: Option<Lent>,
     /// What held the body when it was last awake.
     pub(super) rest: Rest,
+    /// What it felt in this step, if it is awake.
+    pub(super) felt: Option<Felt>,
+    /// How it and the surface met so far.
+    pub(super) contact: Contact,
 }
 
 /// What a hull is built from: it is stale when this has changed.
@@ -114,6 +119,7 @@ impl Body {
     ) -> Result<(), String> {
         self.form = None;
         self.submerged = None;
+        self.contact.forget_step();
         self.solids = solids;
         if self.solids.is_empty() {
             return Err("has neither a collider nor a mesh with a volume; the body does not float".into());

@@ -2,6 +2,7 @@
 
 use super::{
     body::Body,
+    contact::Felt,
     floating::{Buoyancy, Floating},
 };
 use bevy::prelude::*;
@@ -142,8 +143,10 @@ pub(super) fn lend_forces(
             continue;
         }
         state.rest = rest;
+        let center = body.center_of_mass();
+        state.felt = Some(Felt { load, center, motion: motion(body), mass: body.mass(), step: dt });
         let wrench = force(&load, body, config.gravity, dt);
-        let height = state.footprint.at(body.center_of_mass().xz()).map(|water| water.height);
+        let height = state.footprint.at(center.xz()).map(|water| water.height);
         buoyancy.set_if_neq(Buoyancy {
             volume: buoyancy.volume,
             submerged_volume: load.submerged_volume,

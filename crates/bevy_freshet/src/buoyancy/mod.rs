@@ -7,7 +7,8 @@
 //! 1. hulls are built for new bodies, and rebuilt when a collider, a mesh or a scale has changed;
 //! 2. [`WaterSystems::Sample`]: the water is looked up on a lattice over each body's footprint;
 //! 3. [`WaterSystems::Force`]: pressure, resistance and added mass ([`freshet_hydro::load`]) are lent to the solver, for one
-//!    step: after it they are taken back, so that they never add up and a game's own `ExternalForce` keeps its value and its effect.
+//!    step: after it they are taken back, so that they never add up and a game's own `ExternalForce` keeps its value and its effect;
+//! 4. messages tell what [`Entered`], [`Left`], [`Submerged`] and [`Splash`]ed.
 //!
 //! The forces go to the solver's body itself, not through the component `ExternalForce`: writing that one wakes the
 //! body each time, and a body that floats would never sleep.
@@ -23,14 +24,17 @@
 //!   and displace water, and what is open stays filled, so that neither leaks.
 
 mod body;
+mod contact;
 mod floating;
 mod footprint;
 mod force;
 mod form;
+mod messages;
 mod return_to;
 mod solid;
 
 pub use floating::{Buoyancy, BuoyancyModel, Floating, Weight};
+pub use messages::{Entered, Left, Passage, Splash, Submerged};
 pub use return_to::ReturnTo;
 
 use crate::{report::Reported, schedule::WaterSystems};
@@ -46,6 +50,10 @@ impl Plugin for BuoyancyPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Reported>()
             .add_message::<AssetEvent<Mesh>>()
+            .add_message::<Entered>()
+            .add_message::<Left>()
+            .add_message::<Submerged>()
+            .add_message::<Splash>()
             .configure_sets(
                 FixedUpdate,
                 (WaterSystems::Sample, WaterSystems::Force)
@@ -59,7 +67,7 @@ impl Plugin for BuoyancyPlugin {
                     body::build_hulls.after(PhysicsSet::SyncBackend).before(WaterSystems::Sample),
                     footprint::sample_water.in_set(WaterSystems::Sample),
                     force::lend_forces.in_set(WaterSystems::Force),
-                    (force::take_forces_back, return_to::return_bodies)
+                    (force::take_forces_back, messages::tell_contacts, return_to::return_bodies)
                         .chain()
                         .after(PhysicsSet::StepSimulation)
                         .before(PhysicsSet::Writeback),
