@@ -9,12 +9,19 @@ mod buoyancy;
 #[cfg(feature = "rapier")]
 mod buoyancy_cost;
 #[cfg(feature = "rapier")]
+mod buoyancy_joints;
+#[cfg(feature = "rapier")]
+mod buoyancy_messages;
+#[cfg(feature = "rapier")]
+mod buoyancy_ponds;
+#[cfg(feature = "rapier")]
 mod endurance;
 mod features;
 mod fields;
 mod flow;
 mod foam;
 mod glitter;
+mod heights;
 mod ice;
 mod ice_growth;
 mod light;

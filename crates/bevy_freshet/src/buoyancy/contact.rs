@@ -58,8 +58,10 @@ struct Before {
     /// Centre of mass, m, and its velocity, m/s.
     center: Vec3,
     velocity: Vec3,
-    /// Height of the lowest point over the surface, m.
+    /// Height of the lowest point over the surface, m; infinite without water.
     gap: f32,
+    /// How fast body and water move, m/s.
+    pace: f32,
 }
 
 /// The part under water.
@@ -121,26 +123,27 @@ impl Felt {
 
 impl Before {
     fn new(felt: &Felt, footprint: &Footprint) -> Self {
-        let center = felt.center;
-        let height = footprint.at(center.xz()).map_or(f32::NEG_INFINITY, |water| water.height);
-        Self { wet: felt.wet(), center, velocity: felt.motion.linear, gap: footprint.lowest - height }
+        let (center, velocity) = (felt.center, felt.motion.linear);
+        let none = Surface { height: f32::NEG_INFINITY, ..default() };
+        let water = footprint.at(center.xz()).unwrap_or(none);
+        let pace = velocity.length() + water.velocity.length();
+        Self { wet: felt.wet(), center, velocity, gap: footprint.lowest - water.height, pace }
     }
 
-    /// Whether the body was put elsewhere before `now`: its velocity does not take it so far.
+    /// Whether body or water was put elsewhere before `now`: their velocities do not take them so far.
     fn is_elsewhere(&self, now: &Self, step: f32, length: f32) -> bool {
-        let way = self.velocity.length().max(now.velocity.length()) * step;
-        self.center.distance(now.center) > 2.0 * way + 0.5 * length
+        let way = 2.0 * self.pace.max(now.pace) * step + 0.5 * length;
+        self.center.distance(now.center) > way || (self.gap - now.gap).abs() > way
     }
 
-    /// Velocity with which the lowest point met the surface before `now`, m/s.
-    ///
-    /// The solver moves a body over a step with the velocity at its end, so that it passes a place half a step's change later.
-    fn velocity_at_touch(&self, now: &Self) -> Vec3 {
+    /// Velocity with which the lowest point met the surface before `now`, m/s: that at its share of a `step` (s) of constant
+    /// acceleration. However the solver steps, half-way the velocity is what has moved the body.
+    fn velocity_at_touch(&self, now: &Self, step: f32) -> Vec3 {
         let share = self.gap / (self.gap - now.gap);
         if !share.is_finite() {
             return now.velocity;
         }
-        self.velocity + (share.clamp(0.0, 1.0) + 0.5) * (now.velocity - self.velocity)
+        (now.center - self.center) / step + (share.clamp(0.0, 1.0) - 0.5) * (now.velocity - self.velocity)
     }
 }
 
@@ -204,7 +207,7 @@ impl Contact {
     /// The speed of the first touch, m/s, if that is now or was not long ago.
     fn speed(&mut self, before: &Before, now: &Before, felt: &Felt, footprint: &Footprint, length: f32) -> Option<f32> {
         if before.wet.volume == 0.0 && now.wet.volume > 0.0 {
-            let motion = Motion { linear: before.velocity_at_touch(now), ..felt.motion };
+            let motion = Motion { linear: before.velocity_at_touch(now, felt.step), ..felt.motion };
             let speed = felt.meeting(footprint, [before.wet, now.wet], motion).speed;
             self.touch = Some(Touch { speed, age: 0.0 });
         } else if let Some(touch) = &mut self.touch {
@@ -222,7 +225,7 @@ impl Contact {
         step: f32,
         volume: f32,
     ) -> Option<Impact> {
-        let slam = (to.volume - from.volume) / step * meeting.speed / (GRAVITY * volume);
+        let slam = (to.volume - from.volume).max(0.0) / step * meeting.speed / (GRAVITY * volume);
         // A hull that has just touched may have so little in the water that its impact is only to come.
         let touches = from.volume == 0.0 && to.volume > 0.0;
         let is_under = to.volume >= UNDER * volume;
