@@ -6,6 +6,7 @@ use super::{
     footprint::Footprint,
     force::{Lent, Rest},
     form::Form,
+    held::Held,
     solid::{Flaw, Solid},
 };
 use crate::report::Reported;
@@ -41,6 +42,8 @@ pub(crate) struct Body {
     pub(super) lent: Option<Lent>,
     /// What held the body when it was last awake.
     pub(super) rest: Rest,
+    /// What joints and contacts did to it.
+    pub(super) held: Held,
     /// What it felt in this step, if it is awake.
     pub(super) felt: Option<Felt>,
     /// How it and the surface met so far.
