@@ -4,6 +4,7 @@ use bevy::prelude::*;
 use bevy_freshet::prelude::*;
 use bevy_rapier3d::prelude::*;
 use core::f32::consts::PI;
+use std::collections::HashMap;
 
 /// All that has been told, in order.
 #[derive(Resource, Default)]
@@ -28,9 +29,16 @@ fn listen(
 }
 
 impl Told {
+    /// Of which bodies each was told.
+    fn bodies(&self) -> [Vec<Entity>; 4] {
+        let [entered, left, submerged] =
+            [&self.entered, &self.left, &self.submerged].map(|told| told.iter().map(|passage| passage.body).collect());
+        [entered, left, submerged, self.splashes.iter().map(|splash| splash.body).collect()]
+    }
+
     /// How many of each.
     fn counts(&self) -> [usize; 4] {
-        [self.entered.len(), self.left.len(), self.submerged.len(), self.splashes.len()]
+        self.bodies().map(|bodies| bodies.len())
     }
 }
 
@@ -158,29 +166,17 @@ fn bobbing_is_silent() {
 fn nothing_flickers_on_steep_waves() {
     let (mut app, water) = listening();
     corks(&mut app, water, WaterWaves::wind(6.0, 300.0, Vec2::X).scaled(1.5));
-    let mut last = [const { Vec::<(Entity, u32)>::new() }; 4];
-    let mut soonest = u32::MAX;
-    let mut before = [0; 4];
+    let mut last = HashMap::new();
+    let (mut before, mut soonest) = ([0; 4], u32::MAX);
     for step in 0..(20.0 * RATE) as u32 {
         app.update();
-        let told = told(&app);
-        let bodies = |kind: usize| -> Vec<Entity> {
-            match kind {
-                3 => told.splashes[before[3]..].iter().map(|splash| splash.body).collect(),
-                kind => [&told.entered, &told.left, &told.submerged][kind][before[kind]..]
-                    .iter()
-                    .map(|it| it.body)
-                    .collect(),
-            }
-        };
-        for kind in 0..4 {
-            for body in bodies(kind) {
-                let earlier = last[kind].iter().rfind(|(it, _)| *it == body);
-                soonest = earlier.map_or(soonest, |(_, earlier)| soonest.min(step - earlier));
-                last[kind].push((body, step));
+        for (kind, bodies) in told(&app).bodies().into_iter().enumerate() {
+            for &body in &bodies[before[kind]..] {
+                let earlier = last.insert((kind, body), step);
+                soonest = earlier.map_or(soonest, |earlier| soonest.min(step - earlier));
             }
         }
-        before = told.counts();
+        before = told(&app).counts();
     }
     println!("{before:?}, the soonest after {soonest} steps");
     assert!(soonest >= 9 && before[3] > 15);
