@@ -66,6 +66,9 @@ fn what_is_held_feels_all_of_the_water() {
     let stone = body(Collider::cuboid(0.3, 0.3, 0.3), Floating::with_density(2600.0), -7.69);
     let stone = app.world_mut().spawn(stone).id();
     app.world_mut().get_mut::<Transform>(stone).unwrap().translation.x = 20.0;
+    for body in [ball, stone] {
+        app.world_mut().entity_mut(body).insert(Sleeping::disabled());
+    }
     run(&mut app, 20.0);
     for body in [ball, stone] {
         let buoyancy = read::<Buoyancy>(&app, body);

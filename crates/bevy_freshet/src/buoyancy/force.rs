@@ -139,7 +139,7 @@ pub(super) fn lend_forces(
         let center = body.center_of_mass();
         state.felt = Some(Felt { load, center, motion: motion(body), mass: body.mass(), step: dt });
         let own = own_push(body, config.gravity);
-        let wrench = force(&load, body, own + state.held.lasting(), dt);
+        let wrench = force(&load, body, own + state.held.0, dt);
         let height = state.footprint.at(center.xz()).map(|water| water.height);
         buoyancy.set_if_neq(Buoyancy {
             volume: buoyancy.volume,

@@ -1,8 +1,9 @@
 //! What holds a body beside the water: joints and contacts, which the solver finds in the step itself.
 //!
 //! Water that moves with a body leaves it less of a push that accelerates it, and all of one that does not: a buoy on its mooring pulls with all
-//! of its drag. How much it will accelerate cannot be known before the solver has found the forces of joints and contacts, so those of the
-//! last steps are taken. For a body that is held fast the error of that shrinks by a/(m + a) from step to step, a being its added mass.
+//! of its drag. How much it will accelerate cannot be known before the solver has found the forces of joints and contacts, so the mean of the
+//! last steps is taken. For a body that is held fast the error of that shrinks by a share of m/(m + a)/2 from step to step, a being its added mass; and
+//! one that strikes the ground hands it the momentum of its added mass as well, some steps later.
 
 use bevy::prelude::*;
 use bevy_rapier3d::rapier::prelude::RigidBody;
@@ -18,17 +19,14 @@ pub(super) struct Step {
     pub length: f32,
 }
 
-/// What joints and contacts did in the last two steps.
+/// Share of the last step in the mean: ropes that go slack and taut pull in every other one.
+const NEWEST: f32 = 0.5;
+
+/// What joints and contacts did in the last steps, as a mean that forgets.
 #[derive(Default)]
-pub(super) struct Held([Wrench; 2]);
+pub(super) struct Held(pub Wrench);
 
 impl Held {
-    /// What lasts of it, which is the smaller one of two pushes in the same direction. A blow lasts one step.
-    pub fn lasting(&self) -> Wrench {
-        let [a, b] = self.0;
-        Wrench { force: lasting(a.force, b.force), torque: lasting(a.torque, b.torque) }
-    }
-
     /// Learns from how `body` moves after `step`.
     pub fn learn(&mut self, step: &Step, body: &RigidBody) {
         let inertia = inertia(body);
@@ -41,21 +39,11 @@ impl Held {
             force: (needed - step.pushed.force) * free,
             torque: if turns { turned() - step.pushed.torque } else { Vec3::ZERO },
         };
-        self.0 = [if held.is_finite() { held } else { Wrench::ZERO }, self.0[0]];
+        self.0 = if held.is_finite() { self.0 * (1.0 - NEWEST) + held * NEWEST } else { Wrench::ZERO };
     }
 
     pub fn forget(&mut self) {
         *self = Self::default();
-    }
-}
-
-fn lasting(a: Vec3, b: Vec3) -> Vec3 {
-    if a.dot(b) <= 0.0 {
-        Vec3::ZERO
-    } else if a.length_squared() < b.length_squared() {
-        a
-    } else {
-        b
     }
 }
 

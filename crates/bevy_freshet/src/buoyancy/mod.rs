@@ -15,7 +15,7 @@
 //!
 //! # Limits
 //!
-//! * What a joint or a contact does to a body is known to the water one to two steps later.
+//! * What a joint or a contact does to a body is known to the water some steps later.
 //! * Rapier must run in `FixedUpdate` (`in_fixed_schedule()`); a warning tells when it does not.
 //! * With `substeps` above 1, and while `TimestepMode::Interpolated` catches up, a force holds for all of the step.
 //! * bevy_rapier 0.36 writes back a wrong `Transform` for bodies below a *rotated* parent (its `writeback_rigid_bodies`

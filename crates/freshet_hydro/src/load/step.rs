@@ -28,7 +28,7 @@ impl Load {
     /// bob slowly, for which the solver's own step conserves energy, and nearly all for those that would bob within a few steps.
     ///
     /// `others` is gravity and whatever else acts on the body: without it a falling body would meet the drag of a floating one, and one
-    /// that a rope holds would pull it as if it were let go. Blows of contacts are none of it. At rest in balance the answer is the pressure itself, without an error that depends on `dt`.
+    /// that a rope holds would pull it as if it were let go. At rest in balance the answer is the pressure itself, without an error that depends on `dt`.
     pub fn over_step(&self, motion: &Motion, body: &Inertia, others: Wrench, dt: f32) -> Wrench {
         let water = Motion { linear: self.water_velocity, angular: Vec3::ZERO };
         let relative = Motion { linear: motion.linear - water.linear, angular: motion.angular };
