@@ -7,7 +7,7 @@ use core::{f32::consts::PI, time::Duration};
 use freshet_hydro::waves::WATER_DENSITY;
 
 /// Steps per second.
-const RATE: f32 = 60.0;
+pub const RATE: f32 = 60.0;
 
 /// Level of the water, m: not the origin's, so that a forgotten level shows.
 pub const LEVEL: f32 = 3.0;
@@ -29,7 +29,7 @@ pub fn app() -> App {
 }
 
 /// An app with still, deep water at [`LEVEL`].
-fn still_water() -> (App, Entity) {
+pub fn still_water() -> (App, Entity) {
     let mut app = app();
     let water = (Water::new(Vec2::splat(1000.0)), WaterWaves::still(), Transform::from_xyz(0.0, LEVEL, 0.0));
     let water = app.world_mut().spawn(water).id();
@@ -47,7 +47,7 @@ pub fn body(collider: Collider, floating: Floating, above: f32) -> impl Bundle {
     (RigidBody::Dynamic, collider, floating, Velocity::zero(), Transform::from_xyz(0.0, LEVEL + above, 0.0))
 }
 
-fn read<T: Component + Clone>(app: &App, entity: Entity) -> T {
+pub fn read<T: Component + Clone>(app: &App, entity: Entity) -> T {
     app.world().get::<T>(entity).unwrap().clone()
 }
 
@@ -66,12 +66,12 @@ pub fn is_asleep(app: &mut App, entity: Entity) -> bool {
     solver_body(app, entity, |body| body.is_sleeping())
 }
 
-fn assert_near(found: f32, exact: f32, share: f32, what: &str) {
+pub fn assert_near(found: f32, exact: f32, share: f32, what: &str) {
     assert!((found - exact).abs() <= share * exact.abs(), "{what}: {found} instead of {exact}");
 }
 
 /// Draft of a sphere of `radius` and relative density `s`.
-fn sphere_draft(radius: f32, s: f32) -> f32 {
+pub fn sphere_draft(radius: f32, s: f32) -> f32 {
     radius * (1.0 + 2.0 * (((1.0 - 2.0 * s).acos() + 4.0 * PI) / 3.0).cos())
 }
 
@@ -323,6 +323,44 @@ fn a_mesh_is_a_hull() {
     assert_near(draft, sphere_draft(0.5, 250.0 / WATER_DENSITY), 0.05, "draft");
 }
 
+/// A hollow ball of two shells, both inside out, floats as a ball of its outer one; a plane has no hull.
+#[test]
+fn odd_meshes_are_hulls_if_they_close() {
+    let (mut app, _) = still_water();
+    let shell = Sphere::new(0.5).mesh().ico(5).unwrap();
+    let mut hollow = shell.clone().scaled_by(Vec3::splat(0.9));
+    hollow.merge(&shell).unwrap();
+    let hollow = hollow.with_inverted_winding().unwrap();
+    let [hollow, whole, plane] = [hollow, shell, Plane3d::default().into()].map(|mesh| {
+        let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(mesh);
+        let at = Transform::from_xyz(0.0, LEVEL, 0.0);
+        app.world_mut().spawn((RigidBody::Dynamic, Mesh3d(mesh), Floating::with_density(250.0), at)).id()
+    });
+    run(&mut app, 20.0);
+    let [buoyancy, exact] = [hollow, whole].map(|entity| read::<Buoyancy>(&app, entity));
+    assert_near(buoyancy.volume, exact.volume, 1e-4, "volume");
+    assert_near(buoyancy.draft, exact.draft, 1e-3, "draft");
+    assert_eq!(read::<Buoyancy>(&app, plane).volume, 0.0);
+    assert!(read::<Transform>(&app, plane).translation.is_finite());
+}
+
+/// A body that loses its only collider falls, and floats again when it has one.
+#[test]
+fn a_body_may_lose_its_collider() {
+    let (mut app, _) = still_water();
+    let ball = app.world_mut().spawn(body(Collider::ball(0.5), Floating::default(), 0.0)).id();
+    run(&mut app, 2.0);
+    app.world_mut().entity_mut(ball).remove::<Collider>();
+    run(&mut app, 1.0);
+    assert_eq!(read::<Buoyancy>(&app, ball).volume, 0.0);
+    let fallen = read::<Transform>(&app, ball).translation;
+    assert!(fallen.is_finite() && fallen.y < LEVEL - 3.0, "{fallen}");
+    app.world_mut().entity_mut(ball).insert(Collider::ball(0.5));
+    run(&mut app, 40.0);
+    let draft = LEVEL - read::<Transform>(&app, ball).translation.y + 0.5;
+    assert_near(draft, sphere_draft(0.5, 500.0 / WATER_DENSITY), 0.01, "draft");
+}
+
 #[test]
 fn mass_may_be_given_or_left_to_rapier() {
     let (mut app, _) = still_water();
@@ -369,6 +407,8 @@ fn bad_input_is_survived() {
         bodies.push(entity);
     }
     bodies.push(app.world_mut().spawn((RigidBody::Dynamic, Floating::default(), Transform::default())).id());
+    let weightless = body(Collider::ball(0.3), Floating::with_rapier_mass(), 0.0);
+    bodies.push(app.world_mut().spawn((weightless, ColliderMassProperties::Density(0.0))).id());
     for entity in bodies.clone() {
         app.world_mut().entity_mut(entity).insert(CollisionGroups::new(Group::NONE, Group::NONE));
     }

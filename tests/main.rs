@@ -12,6 +12,11 @@ mod buoyancy;
 mod buoyancy_cost;
 #[cfg(feature = "rapier")]
 mod buoyancy_gizmos;
+mod buoyancy_joints;
+#[cfg(feature = "rapier")]
+mod buoyancy_messages;
+#[cfg(feature = "rapier")]
+mod buoyancy_ponds;
 #[cfg(feature = "rapier")]
 mod endurance;
 #[cfg(feature = "rapier")]
@@ -21,6 +26,7 @@ mod fields;
 mod flow;
 mod foam;
 mod glitter;
+mod heights;
 mod ice;
 mod ice_growth;
 mod light;

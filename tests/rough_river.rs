@@ -55,7 +55,11 @@ fn spawn(world: &mut World, i: u32, height: f32) -> Entity {
     let floating = Floating { model, ..Floating::with_density(density) };
     let (x, z) = ((i * 37 % 100) as f32 - 50.0, (i * 53 % 23) as f32 - 11.0);
     let mut body = world.spawn((RigidBody::Dynamic, shape, floating, Velocity::zero(), Ccd::enabled()));
-    body.insert(Transform::from_xyz(x, LEVEL + height, z).with_scale(Vec3::splat(if i % 9 == 0 { 1.6 } else { 1.0 })));
+    body.insert(Transform::from_xyz(x, LEVEL + height, z).with_scale(Vec3::splat(if i.is_multiple_of(9) {
+        1.6
+    } else {
+        1.0
+    })));
     body.id()
 }
 

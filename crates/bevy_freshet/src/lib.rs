@@ -36,7 +36,10 @@ pub use schedule::WaterSystems;
 /// What an app with water usually needs.
 pub mod prelude {
     #[cfg(feature = "rapier")]
-    pub use crate::buoyancy::{Buoyancy, BuoyancyGizmos, BuoyancyModel, Floating, ReturnTo, ShowBuoyancyGizmo, Weight};
+    pub use crate::buoyancy::{
+        Buoyancy, BuoyancyGizmos, BuoyancyModel, Entered, Floating, Left, Passage, ReturnTo, ShowBuoyancyGizmo, Splash,
+        Submerged, Weight,
+    };
     pub use crate::{
         WaterPlugin, WaterSystems,
         bed::BedShading,
@@ -46,7 +49,7 @@ pub mod prelude {
             WaterLighting, WaterOptics, WaterSimulation, WaterSource, WaterSources, WaterWall, WaterWalls, WaterWaves,
         },
         interaction::{Disturb, DisturbsWater, DyesWater, WaterTouch, WaterTouchBlocked},
-        query::{WaterHit, WaterQuery, WaterSample},
+        query::{Submersion, WaterHit, WaterQuery, WaterSample},
         reflection::WaterReflection,
         sky::{Sky, SkyPlugin, SkyView},
         star_filter::{StarFilter, StarFilterPlugin},

@@ -8,6 +8,10 @@
 //!
 //! (Gerstner 1802; M06 eq. for the ocean), with `ω² = (g k + (σ/ρ) k³) tanh(k d)` (Airy 1845). The factor `f` is
 //! [`shallow_fade`], the same for all trains of one place. The surface shader's `waves.wgsl` holds the same equations.
+mod heights;
+
+pub use heights::HeightSearch;
+
 use core::f32::consts::TAU;
 use glam::{Vec2, Vec3};
 
@@ -37,6 +41,9 @@ pub fn shallow_fade(depth: f32, fade_depth: f32) -> f32 {
     let t = (depth / fade_depth).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
+
+/// The most that [`shallow_fade`] rises while the depth grows by `fade_depth`.
+pub const STEEPEST_FADE: f32 = 1.5;
 
 /// One wave train, as a user describes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,6 +144,27 @@ impl WaveField {
             let speed = train.amplitude * train.angular_frequency;
             let horizontal = train.wave_vector.normalize_or_zero() * (speed * cos);
             sum += Vec3::new(horizontal.x, speed * sin, horizontal.y);
+        }
+        sum * fade
+    }
+
+    /// Velocity, m/s, of the water `below` (m, 0…`depth`) the particle that rests at `rest`, in a column of `depth` (m, > 0, may be
+    /// infinite).
+    ///
+    /// Of each train's velocity at the surface cosh k(h − d)/cosh k h is left to and fro, and sinh k(h − d)/sinh k h up and down
+    /// (Airy 1845): e^(−k d) of both in deep water.
+    pub fn velocity_below(&self, rest: Vec2, fade: f32, below: f32, depth: f32) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        for train in &self.trains {
+            let (sin, cos) = train.sin_cos(rest);
+            let speed = train.amplitude * train.angular_frequency;
+            let wavenumber = train.wave_vector.length();
+            let decay = libm::expf(-wavenumber * below);
+            let (here, all) = (-2.0 * wavenumber * (depth - below).max(0.0), -2.0 * wavenumber * depth);
+            let level = decay * (1.0 + libm::expf(here)) / (1.0 + libm::expf(all));
+            let upright = if all < 0.0 { decay * libm::expm1f(here) / libm::expm1f(all) } else { 0.0 };
+            let horizontal = train.wave_vector.normalize_or_zero() * (speed * cos * level);
+            sum += Vec3::new(horizontal.x, speed * sin * upright, horizontal.y);
         }
         sum * fade
     }
@@ -254,6 +282,24 @@ mod tests {
         let after = WaveField::at(&sea(), 3.0, 9.0 + dt).displacement(rest, 1.0);
         let velocity = WaveField::at(&sea(), 3.0, 9.0).velocity(rest, 1.0);
         assert!(((after - before) / (2.0 * dt as f32)).distance(velocity) < 2e-3);
+    }
+
+    /// In deep water e^(−k d); over a bed nothing goes up and down at it, and the flow has neither sources nor eddies.
+    #[test]
+    fn velocity_below_is_that_of_airy() {
+        let wave = Wave { direction: Vec2::X, wavelength: 4.0, steepness: 0.1, phase: 0.4 };
+        let (field, k) = (WaveField::at(&[wave], 1.5, 2.0), TAU / 4.0);
+        let rest = Vec2::new(0.7, 0.0);
+        let surface = field.velocity(rest, 0.8);
+        assert!(field.velocity_below(rest, 0.8, 0.0, 1.5).abs_diff_eq(surface, 1e-6));
+        let deep = field.velocity_below(rest, 0.8, 0.9, f32::INFINITY);
+        assert!(deep.abs_diff_eq(surface * (-k * 0.9).exp(), 1e-6), "{deep}");
+        let bottom = field.velocity_below(rest, 0.8, 1.5, 1.5);
+        assert!(bottom.y.abs() < 1e-6 && bottom.x.abs() > 0.05, "{bottom}");
+        assert_relative_eq!(bottom.x, surface.x / (k * 1.5).cosh(), max_relative = 1e-4);
+        let middle = field.velocity_below(rest, 0.8, 0.6, 1.5);
+        assert_relative_eq!(middle.y, surface.y * (k * 0.9).sinh() / (k * 1.5).sinh(), max_relative = 1e-4);
+        assert!(field.velocity_below(rest, 0.8, 0.0, 0.0).is_finite());
     }
 
     #[test]

@@ -23,6 +23,28 @@ use std::{path::Path, sync::Arc};
 pub struct WaterBed {
     #[reflect(ignore, default = "no_elevations")]
     elevations: Arc<Grid<f32>>,
+    /// Bound of the slope between cell centres; infinite if cells have no data.
+    #[reflect(ignore, default = "unbounded")]
+    steepest: f32,
+}
+
+fn unbounded() -> f32 {
+    f32::INFINITY
+}
+
+/// The steepest slope of `elevations` between cell centres; infinite if any has no data.
+fn steepest_slope(elevations: &Grid<f32>) -> f32 {
+    let cells = elevations.values().iter();
+    if cells.clone().any(|z| !z.is_finite()) {
+        return f32::INFINITY;
+    }
+    let columns = elevations.size().x as usize;
+    let steepest = |step: usize, ends: &dyn Fn(usize) -> bool| {
+        let pairs = cells.clone().zip(cells.clone().skip(step)).enumerate();
+        pairs.filter(|(i, _)| !ends(*i)).map(|(_, (a, b))| (a - b).abs()).fold(0.0, f32::max)
+    };
+    let (across, along) = (steepest(1, &|i| (i + 1) % columns == 0), steepest(columns, &|_| false));
+    across.hypot(along) / elevations.cell_size()
 }
 
 /// A grid of one cell without data: what reflection builds a bed from.
@@ -54,7 +76,7 @@ impl WaterBed {
             return Err(WaterBedError::Empty);
         }
         let finite = elevations.map(|z| if z.is_finite() { *z } else { f32::NAN });
-        Ok(Self { elevations: Arc::new(finite) })
+        Ok(Self { steepest: steepest_slope(&finite), elevations: Arc::new(finite) })
     }
 
     /// A bed from an ESRI ASCII grid; its centre comes to lie at the entity.
@@ -77,12 +99,18 @@ impl WaterBed {
     /// The same bed with its gaps filled by a smooth continuation of the ground around them, at least `lowest` (m), so
     /// that land goes on where the data ends.
     pub fn filled(&self, lowest: f32) -> Self {
-        Self { elevations: Arc::new(fill_missing(&self.elevations, lowest)) }
+        let filled = fill_missing(&self.elevations, lowest);
+        Self { steepest: steepest_slope(&filled), elevations: Arc::new(filled) }
     }
 
     /// The elevations, m; NaN where there is no data.
     pub fn elevations(&self) -> &Arc<Grid<f32>> {
         &self.elevations
+    }
+
+    /// Bound of the slope of the ground; infinite if data is missing.
+    pub(crate) fn steepest(&self) -> f32 {
+        self.steepest
     }
 
     /// Elevation at local xz, m, bilinear between cell centres; `None` outside the grid and where data is missing.

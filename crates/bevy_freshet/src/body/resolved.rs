@@ -56,6 +56,8 @@ pub(crate) struct ResolvedBed {
     pub bed_from_local: Affine2,
     /// World height of the bed entity, m.
     pub base: f32,
+    /// Bound of the slope of its ground; infinite if data is missing.
+    pub steepest: f32,
 }
 
 impl ResolvedWater {
@@ -286,16 +288,22 @@ fn usable_waves(entity: Entity, settings: &WaterWaves, time: f64, reported: &mut
     WaveField::at(&usable, depth, time)
 }
 
-/// The bed whose grid holds the water's centre; the highest one if several do.
+/// The bed whose grid holds the water's centre; the highest one if several do, of those that are below the water there, so that a lake under
+/// a pond has not the pond's bed.
 fn bed_below(water: &ResolvedWater, beds: &Query<(Entity, &WaterBed, &GlobalTransform)>) -> Option<ResolvedBed> {
     beds.iter()
         .filter_map(|(entity, bed, pose)| {
             let bed_from_local = yaw_frame(pose).inverse() * water.world_from_local;
-            bed.elevations().cell_at(bed_from_local.transform_point2(Vec2::ZERO))?;
+            let center = bed_from_local.transform_point2(Vec2::ZERO);
+            bed.elevations().cell_at(center)?;
             let (elevations, base) = (bed.elevations().clone(), pose.translation().y);
-            Some(ResolvedBed { entity, elevations, bed_from_local, base })
+            let is_below = base + elevations.sample(center) < water.level;
+            Some((is_below, ResolvedBed { entity, elevations, bed_from_local, base, steepest: bed.steepest() }))
         })
-        .max_by(|a, b| a.base.total_cmp(&b.base).then(a.entity.cmp(&b.entity)))
+        .max_by(|(a_below, a), (b_below, b)| {
+            a_below.cmp(b_below).then(a.base.total_cmp(&b.base)).then(a.entity.cmp(&b.entity))
+        })
+        .map(|(_, bed)| bed)
 }
 
 /// Warns if a corner of the water lies outside its bed, where the nearest edge of the bed counts, or if the water meets a

@@ -1,11 +1,13 @@
 //! A floating body: its hull, built from its colliders or its mesh, and the mass that follows from it.
 
 use super::{
+    contact::{Contact, Felt},
     exchange::Exchanging,
     floating::{Buoyancy, BuoyancyModel, Floating, Weight},
     footprint::Footprint,
     force::{Lent, Rest},
     form::Form,
+    held::Held,
     solid::{Flaw, Solid},
 };
 use crate::report::Reported;
@@ -43,6 +45,12 @@ pub(crate) struct Body {
     pub(super) exchanging: Exchanging,
     /// What held the body when it was last awake.
     pub(super) rest: Rest,
+    /// What joints and contacts did to it.
+    pub(super) held: Held,
+    /// What it felt in this step, if it is awake.
+    pub(super) felt: Option<Felt>,
+    /// How it and the surface met so far.
+    pub(super) contact: Contact,
 }
 
 /// What a hull is built from: it is stale when this has changed.
@@ -118,6 +126,7 @@ impl Body {
         self.form = None;
         self.submerged = None;
         self.exchanging = Exchanging::default();
+        self.contact.forget_step();
         self.solids = solids;
         if self.solids.is_empty() {
             return Err("has neither a collider nor a mesh with a volume; the body does not float".into());

@@ -108,7 +108,7 @@ pub(super) fn displace(
         let body = contexts.get(link.0).ok().and_then(|set| set.bodies.get(handle.0));
         let Some(body) = body.filter(|body| any && body.is_enabled()) else { continue };
         let Body { form: Some(form), footprint, exchanging, .. } = &mut *state else { continue };
-        let (Some(entity), Some(surface)) = (footprint.water(), footprint.plane()) else { continue };
+        let (Some(entity), Some(surface)) = (footprint.water, footprint.plane()) else { continue };
         let Ok((mut simulated, water, settings)) = waters.get_mut(entity) else { continue };
         let Some(Raster { origin, cell, size }) = simulated.raster().filter(|_| settings.push > 0.0) else { continue };
         let raster = ColumnRaster { origin, cell, size };

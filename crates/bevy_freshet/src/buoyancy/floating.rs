@@ -9,9 +9,9 @@ use freshet_hydro::hull::HullDrag;
 ///
 /// Beside a dynamic Rapier `RigidBody`. Its hull is the union of the body's colliders (its own and its children's,
 /// sensors excepted, of any closed shape, scaled as Rapier scales them), or, without a collider, the closed mesh of
-/// its `Mesh3d`. Shapes without an inside (half-spaces, height fields, polylines) are refused with a warning; an open
-/// triangle mesh floats as its convex hull, with a warning. Fixed and kinematic bodies are left alone. The water answers
-/// the body's meshes, as it is [`DisturbsWater`] as well.
+/// its `Mesh3d`, with its sealed cavities. Shapes without an inside (half-spaces, height fields, polylines) are refused with a warning; an open
+/// triangle mesh floats as its convex hull, with a warning. Fixed and kinematic bodies are not moved by the water, but
+/// take up room in simulated water and push it. The water answers the body's meshes, as it is [`DisturbsWater`] as well.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 #[require(Buoyancy, Body, DisturbsWater)]
@@ -62,7 +62,8 @@ pub enum BuoyancyModel {
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Clone, Debug, PartialEq)]
 pub enum Weight {
-    /// Homogeneous, of this density in kg/m³, 1…30000. Water has 998; a body of less floats.
+    /// Homogeneous, of this density in kg/m³, 1…30000. Water has 998; a body of less floats. That of a hollow body is its mass over all
+    /// that it encloses.
     ///
     /// Mass, centre and inertia in the solver become those of the hull: this overrides what the body's colliders
     /// (`ColliderMassProperties`) and `AdditionalMassProperties` say.

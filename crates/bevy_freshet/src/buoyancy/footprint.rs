@@ -12,7 +12,6 @@ use bevy_rapier3d::{
     prelude::RapierRigidBodyHandle,
 };
 use freshet_hydro::{hull::SurfacePlane, load::Surface};
-use std::cell::Cell;
 
 /// Places along each side of the lattice under a hull: waves as long as the hull are seen, much shorter ones are not.
 const PLACES: usize = 4;
@@ -31,32 +30,40 @@ pub(super) struct Footprint {
     size: Vec2,
     places: usize,
     samples: Vec<Option<Surface>>,
-    /// The water that was found last.
-    water: Option<Entity>,
     /// Height of the body's lowest point, m.
     pub(super) lowest: f32,
+    /// The water that the body is in or over.
+    pub(super) water: Option<Entity>,
 }
 
 impl Footprint {
-    /// Looks up the water at `places`² (at least 2²) points from corner to corner of `area`; at its corners only where that is enough:
-    /// where two places within differ from what the corners say by less than [`FLAT`].
-    fn look_up(&mut self, area: Rect, places: usize, water: impl Fn(Vec2) -> Option<Surface>) {
+    /// Looks up the water at `places`² (at least 2²) points from corner to corner of `area`, whose middle has been looked up; at its
+    /// corners only where that is enough: where two places within differ from what the corners say by less than [`FLAT`].
+    fn look_up(
+        &mut self,
+        area: Rect,
+        places: usize,
+        middle: Option<Surface>,
+        mut water: impl FnMut(Vec2) -> Option<Surface>,
+    ) {
         self.min = area.min;
         self.size = area.size();
-        self.look_up_lattice(2, &water);
-        let is_near = |within: Vec2| {
-            let place = self.min + self.size * within;
-            let (Some(expected), Some(found)) = (self.at(place), water(place)) else { return false };
+        self.look_up_lattice(2, &mut water);
+        let is_near = |within: Vec2, found: Option<Surface>| {
+            let (Some(expected), Some(found)) = (self.at(self.min + self.size * within), found) else { return false };
             (expected.height - found.height).abs() <= FLAT * self.size.max_element()
                 && expected.velocity.distance(found.velocity) <= EVEN
         };
         // The second lies off all symmetries of the corners and the middle, so that a short wave that fits these shows there.
-        if places > 2 && !(is_near(Vec2::splat(0.5)) && is_near(vec2(0.31, 0.66))) {
-            self.look_up_lattice(places, &water);
+        const OFF_MIDDLE: Vec2 = vec2(0.31, 0.66);
+        if places > 2
+            && !(is_near(Vec2::splat(0.5), middle) && is_near(OFF_MIDDLE, water(self.min + self.size * OFF_MIDDLE)))
+        {
+            self.look_up_lattice(places, &mut water);
         }
     }
 
-    fn look_up_lattice(&mut self, places: usize, water: &impl Fn(Vec2) -> Option<Surface>) {
+    fn look_up_lattice(&mut self, places: usize, water: &mut impl FnMut(Vec2) -> Option<Surface>) {
         self.places = places;
         let step = self.size / (places - 1) as f32;
         self.samples.clear();
@@ -65,11 +72,6 @@ impl Footprint {
                 self.samples.push(water(self.min + step * Vec2::new(column as f32, row as f32)));
             }
         }
-    }
-
-    /// The water around the body.
-    pub(super) fn water(&self) -> Option<Entity> {
-        self.water
     }
 
     /// The plane through its corners; level, if some are dry, and nothing if all are.
@@ -97,6 +99,11 @@ impl Footprint {
     /// Whether no place has water.
     pub(super) fn is_dry(&self) -> bool {
         self.samples.iter().all(Option::is_none)
+    }
+
+    /// The place of the footprint that is nearest to `place`.
+    pub(super) fn nearest(&self, place: Vec2) -> Vec2 {
+        place.clamp(self.min, self.min + self.size)
     }
 
     /// Water at `place`, bilinear between the four places around it. Where some of them are dry the wet ones count,
@@ -152,22 +159,26 @@ pub(super) fn sample_water(
             return;
         }
         let aabb = bounds(&state.solids, body.position());
-        // Where waters lie above one another the keel tells which one the body is in.
-        let height = aabb.mins.y;
+        let area = Rect::from_corners(aabb.mins.xz(), aabb.maxs.xz());
         let places = match floating.model {
             BuoyancyModel::Voxels { per_axis } => per_axis.clamp(2, 16) as usize,
             _ => PLACES,
         };
-        state.footprint.lowest = height;
-        let in_water = Cell::new(None);
-        state.footprint.look_up(Rect::from_corners(aabb.mins.xz(), aabb.maxs.xz()), places, |at| {
-            let sample = water.sample(Vec3::new(at.x, height, at.y))?;
-            in_water.set(Some(sample.water));
-            let found = surface(&sample)?;
-            let velocity = if floating.current { found.velocity } else { Vec3::ZERO };
-            Some(Surface { velocity, ..found })
+        // Where waters lie above one another the keel under the middle tells which one the body is in: all of it, as far as that reaches.
+        let keel = |at: Vec2| vec3(at.x, aabb.mins.y, at.y);
+        let middle = water.sample(keel(area.center()));
+        let mut own = middle.as_ref().map(|sample| sample.water);
+        let moving = |sample: &WaterSample| {
+            let found = surface(sample)?;
+            Some(Surface { velocity: if floating.current { found.velocity } else { Vec3::ZERO }, ..found })
+        };
+        state.footprint.lowest = aabb.mins.y;
+        state.footprint.look_up(area, places, middle.as_ref().and_then(moving), |at| {
+            let found = own.and_then(|own| water.sample_of(own, at)).or_else(|| water.sample(keel(at)))?;
+            own = own.or(Some(found.water));
+            moving(&found)
         });
-        state.footprint.water = in_water.get();
+        state.footprint.water = own;
     });
 }
 
@@ -182,7 +193,7 @@ mod tests {
     #[test]
     fn a_plane_is_interpolated_exactly() {
         let mut footprint = Footprint::default();
-        footprint.look_up(Rect::new(-1.0, 2.0, 3.0, 4.0), 4, plane);
+        footprint.look_up(Rect::new(-1.0, 2.0, 3.0, 4.0), 4, plane(Vec2::new(1.0, 3.0)), plane);
         for at in [Vec2::new(-1.0, 2.0), Vec2::new(3.0, 4.0), Vec2::new(0.3, 3.7)] {
             let (found, exact) = (footprint.at(at).unwrap(), plane(at).unwrap());
             assert!((found.height - exact.height).abs() < 1e-5);
@@ -194,12 +205,12 @@ mod tests {
     #[test]
     fn a_shore_ends_the_water() {
         let mut footprint = Footprint::default();
-        footprint.look_up(Rect::new(-1.0, -1.0, 1.0, 1.0), 5, |at| plane(at).filter(|_| at.x < 0.1));
+        footprint.look_up(Rect::new(-1.0, -1.0, 1.0, 1.0), 5, plane(Vec2::ZERO), |at| plane(at).filter(|_| at.x < 0.1));
         assert!(footprint.at(Vec2::new(0.9, 0.0)).is_none());
         let found = footprint.at(Vec2::new(-0.6, 0.2)).unwrap();
         assert!((found.height - 0.65).abs() < 1e-5);
         assert!(!footprint.is_dry());
-        footprint.look_up(Rect::new(0.0, 0.0, 0.0, 0.0), 1, |_| None);
+        footprint.look_up(Rect::new(0.0, 0.0, 0.0, 0.0), 1, None, |_| None);
         assert!(footprint.is_dry() && footprint.at(Vec2::ZERO).is_none());
     }
 }

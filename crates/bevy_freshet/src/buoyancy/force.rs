@@ -2,7 +2,9 @@
 
 use super::{
     body::Body,
+    contact::Felt,
     floating::{Buoyancy, Floating},
+    held::{Step, inertia},
 };
 use bevy::prelude::*;
 use bevy_rapier3d::{
@@ -13,7 +15,7 @@ use bevy_rapier3d::{
     prelude::RapierRigidBodyHandle,
     rapier::prelude::RigidBody,
 };
-use freshet_hydro::load::{BodyState, Fluid, Inertia, Load, Motion, Pose, Wrench};
+use freshet_hydro::load::{BodyState, Fluid, Load, Motion, Pose, Wrench};
 
 /// Share of √(g L), L being the length of a body, above which its speed keeps it from sleep in the water: it lies within 10⁻³ L of its
 /// place then. Rapier's own threshold of 0.05 m/s would freeze what drifts in a slow current, or still bobs by a centimetre.
@@ -32,10 +34,11 @@ const WAKING_SHARE: f32 = 0.01;
 /// Change of the water's velocity, m/s, that wakes a body.
 const WAKING_VELOCITY: f32 = 0.02;
 
-/// The game's own force and torque in the solver, to be restored after the step.
+/// The game's own force and torque in the solver, to be restored after the step, and what the step was.
 pub(super) struct Lent {
     force: Vec3,
     torque: Vec3,
+    step: Step,
 }
 
 /// What the water did to a body when it was last awake.
@@ -90,23 +93,14 @@ fn load(state: &mut Body, body: &RigidBody, gravity: Vec3) -> Load {
     load
 }
 
+/// Gravity and the game's own push.
+fn own_push(body: &RigidBody, gravity: Vec3) -> Wrench {
+    Wrench { force: gravity * (body.gravity_scale() * body.mass()) + body.user_force(), torque: body.user_torque() }
+}
+
 /// The force for the coming step: [`Load::over_step`] with what else acts on `body`.
-fn force(load: &Load, body: &RigidBody, gravity: Vec3, dt: f32) -> Wrench {
-    let mass = body.mass_properties();
-    let inertia = mass.effective_world_inv_inertia;
-    let inertia = Inertia {
-        inverse_mass: mass.effective_inv_mass,
-        inverse_inertia: Mat3::from_cols(
-            Vec3::new(inertia.m11, inertia.m12, inertia.m13),
-            Vec3::new(inertia.m12, inertia.m22, inertia.m23),
-            Vec3::new(inertia.m13, inertia.m23, inertia.m33),
-        ),
-    };
-    let others = Wrench {
-        force: gravity * (body.gravity_scale() * body.mass()) + body.user_force(),
-        torque: body.user_torque(),
-    };
-    let wrench = load.over_step(&motion(body), &inertia, others, dt);
+fn force(load: &Load, body: &RigidBody, others: Wrench, dt: f32) -> Wrench {
+    let wrench = load.over_step(&motion(body), &inertia(body), others, dt);
     if wrench.is_finite() { wrench } else { Wrench::ZERO }
 }
 
@@ -144,9 +138,12 @@ pub(super) fn lend_forces(
             continue;
         }
         state.rest = rest;
-        let wrench = force(&load, body, config.gravity, dt);
+        let center = body.center_of_mass();
+        state.felt = Some(Felt { load, center, motion: motion(body), mass: body.mass(), step: dt });
+        let own = own_push(body, config.gravity);
+        let wrench = force(&load, body, own + state.held.0, dt);
         state.exchanging.force = wrench.force - load.pressure.force;
-        let height = state.footprint.at(body.center_of_mass().xz()).map(|water| water.height);
+        let height = state.footprint.at(center.xz()).map(|water| water.height);
         buoyancy.set_if_neq(Buoyancy {
             volume: buoyancy.volume,
             submerged_volume: load.submerged_volume,
@@ -163,19 +160,21 @@ pub(super) fn lend_forces(
             || (load.submerged_volume > 0.0
                 && is_moving(body, state.length(), config.gravity.length(), wrench.torque.length()));
         if !wake && wrench == Wrench::ZERO {
+            state.held.forget();
             continue;
         }
         let Some(body) = set.bodies.get_mut(handle.0) else { continue };
         if wake {
             body.wake_up(true);
         }
-        state.lent = Some(Lent { force: body.user_force(), torque: body.user_torque() });
+        let step = Step { motion: motion(body), pushed: own + wrench, length: dt };
+        state.lent = Some(Lent { force: body.user_force(), torque: body.user_torque(), step });
         body.add_force(wrench.force, false);
         body.add_torque(wrench.torque, false);
     }
 }
 
-/// Restores each body's own forces in the solver after the step.
+/// Restores each body's own forces in the solver after the step, and learns what else held it.
 pub(super) fn take_forces_back(
     mut floating: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Body)>,
     mut contexts: Query<&mut RapierRigidBodySet>,
@@ -184,6 +183,7 @@ pub(super) fn take_forces_back(
         let Some(lent) = state.lent.take() else { continue };
         let Ok(mut set) = contexts.get_mut(link.0) else { continue };
         let Some(body) = set.bodies.get_mut(handle.0) else { continue };
+        state.held.learn(&lent.step, body);
         body.reset_forces(false);
         body.reset_torques(false);
         body.add_force(lent.force, false);

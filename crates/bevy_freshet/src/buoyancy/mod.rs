@@ -5,9 +5,13 @@
 //! solver is about to use:
 //!
 //! 1. hulls are built for new bodies, and rebuilt when a collider, a mesh or a scale has changed;
-//! 2. [`WaterSystems::Sample`]: the water is looked up on a lattice over each body's footprint;
-//! 3. [`WaterSystems::Force`]: pressure, resistance and added mass ([`freshet_hydro::load`]) are lent to the solver, for one
+//! 2. bodies are put into the simulated waters that they were in ([`WaterSimulation::push`](crate::body::WaterSimulation::push)): each cell
+//!    loses the room that the hull takes up in it;
+//! 3. [`WaterSystems::Sample`]: the water is looked up on a lattice over each body's footprint;
+//! 4. [`WaterSystems::Force`]: pressure, resistance and added mass ([`freshet_hydro::load`]) are lent to the solver, for one
 //!    step: after it they are taken back, so that they never add up and a game's own `ExternalForce` keeps its value and its effect.
+//!    Simulated water gets the opposite of them;
+//! 5. messages tell what [`Entered`], [`Left`], [`Submerged`] and [`Splash`]ed.
 //!
 //! [`BuoyancyGizmos`] draw what comes of it.
 //!
@@ -16,25 +20,33 @@
 //!
 //! # Limits
 //!
+//! * What a joint or a contact does to a body is known to the water some steps later.
 //! * Rapier must run in `FixedUpdate` (`in_fixed_schedule()`); a warning tells when it does not.
 //! * With `substeps` above 1, and while `TimestepMode::Interpolated` catches up, a force holds for all of the step.
 //! * bevy_rapier 0.36 writes back a wrong `Transform` for bodies below a *rotated* parent (its `writeback_rigid_bodies`
 //!   scales after rotating); moved and scaled parents are right, and the solver's own pose always is.
-//! * Simulated water feels a body's drag (`WaterSimulation::push`), and not yet the room that it takes.
-//! * A closed mesh within another counts as filled with water: give the outer shell of a hollow body only.
+//! * What a body gives to simulated water is summed over cells, and what it gets over its hull: up to a tenth of the momentum that they
+//!   exchange by pressure is made or lost so. A body of less than a cell is spread over three by three of them.
+//! * On the GPU, a simulated water learns of bodies in the next frame, and they of it when its state has come back.
+//! * A mesh holds what its outermost closed shells enclose ([`Hull::new`](freshet_hydro::hull::Hull::new)): sealed cavities stay dry for ever
+//!   and displace water, and what is open stays filled, so that neither leaks.
 
 mod body;
+mod contact;
 mod exchange;
 mod floating;
 mod footprint;
 mod force;
 mod form;
 mod gizmos;
+mod held;
+mod messages;
 mod return_to;
 mod solid;
 
 pub use floating::{Buoyancy, BuoyancyModel, Floating, Weight};
 pub use gizmos::{BuoyancyGizmos, ShowBuoyancyGizmo};
+pub use messages::{Entered, Left, Passage, Splash, Submerged};
 pub use return_to::ReturnTo;
 
 use crate::{report::Reported, schedule::WaterSystems};
@@ -51,6 +63,10 @@ impl Plugin for BuoyancyPlugin {
         app.add_plugins(gizmos::BuoyancyGizmosPlugin)
             .init_resource::<Reported>()
             .add_message::<AssetEvent<Mesh>>()
+            .add_message::<Entered>()
+            .add_message::<Left>()
+            .add_message::<Submerged>()
+            .add_message::<Splash>()
             .configure_sets(
                 FixedUpdate,
                 (WaterSystems::Sample, WaterSystems::Force)
@@ -67,7 +83,7 @@ impl Plugin for BuoyancyPlugin {
                         .before(WaterSystems::Sample),
                     footprint::sample_water.in_set(WaterSystems::Sample),
                     (force::lend_forces, exchange::return_forces).chain().in_set(WaterSystems::Force),
-                    (force::take_forces_back, return_to::return_bodies)
+                    (force::take_forces_back, messages::tell_contacts, return_to::return_bodies)
                         .chain()
                         .after(PhysicsSet::StepSimulation)
                         .before(PhysicsSet::Writeback),

@@ -1,7 +1,10 @@
 //! Heights, normals, velocities and depths of the water for physics and gameplay.
+mod heights;
 mod raycast;
+mod swim;
 
 pub use raycast::WaterHit;
+pub use swim::Submersion;
 
 use crate::body::ResolvedWater;
 use bevy::{ecs::system::SystemParam, prelude::*};
@@ -38,17 +41,54 @@ impl WaterQuery<'_, '_> {
     /// The water at `position` (world, m): `None` outside all waters and on dry land.
     ///
     /// Where several waters lie above one another it is the lowest one whose surface is above the position, else the
-    /// highest one below it: a swimmer in the lake under a hanging pond is in the lake.
+    /// highest one below it: a swimmer in the lake under a hanging pond is in the lake. A water whose bed lies more than half a metre above
+    /// the position counts only where there is no other: whoever falls from under the pond falls into the lake. A water without a
+    /// bed has no bottom.
     pub fn sample(&self, position: Vec3) -> Option<WaterSample> {
-        self.waters.iter().filter_map(|(entity, water)| sample(entity, water, position.xz())).min_by(|a, b| {
-            let rank = |sample: &WaterSample| {
-                let above = sample.height - position.y;
-                (above < 0.0, above.abs())
-            };
-            let ((a_below, a_distance), (b_below, b_distance)) = (rank(a), rank(b));
-            a_below.cmp(&b_below).then(a_distance.total_cmp(&b_distance)).then(a.water.cmp(&b.water))
+        let samples = self.waters.iter().filter_map(|(entity, water)| sample(entity, water, position.xz()));
+        samples.min_by(|a, b| {
+            let ((a_rank, a_distance), (b_rank, b_distance)) = (rank(a, position.y), rank(b, position.y));
+            a_rank.cmp(&b_rank).then(a_distance.total_cmp(&b_distance)).then(a.water.cmp(&b.water))
         })
     }
+
+    /// The `water` at world xz, if it is there.
+    #[cfg(feature = "rapier")]
+    pub(crate) fn sample_of(&self, water: Entity, place: Vec2) -> Option<WaterSample> {
+        self.waters.get(water).ok().and_then(|(entity, water)| sample(entity, water, place))
+    }
+}
+
+/// Thickness of the ground that belongs to the water over it, m: bodies sink in a little, and beds are coarser than terrain.
+const GROUND: f32 = 0.5;
+
+/// How near a water is to a position at `height`, among all at its place: first whether it is in the water, over it or under its bed,
+/// then the distance to its surface, m.
+fn rank(sample: &WaterSample, height: f32) -> (u8, f32) {
+    let above = sample.height - height;
+    let rank = match above {
+        ..0.0 => 1,
+        _ if above - sample.depth > GROUND => 2,
+        _ => 0,
+    };
+    (rank, above.abs())
+}
+
+/// The surface of a water at a place.
+struct Found {
+    /// The particle at rest that is there now, local xz, m.
+    rest: Vec2,
+    /// Height over the still water's, m.
+    elevation: f32,
+    /// Depth of the column, m.
+    depth: f32,
+}
+
+/// The surface of `water` at local `place` of its rectangle, if that is not dry.
+fn find(water: &ResolvedWater, place: Vec2) -> Option<Found> {
+    let (rest, elevation) = water.surface(place);
+    let depth = water.ground_depth(place) + elevation;
+    (depth > 0.0).then_some(Found { rest, elevation, depth })
 }
 
 /// `water` at world xz, if it is there.
@@ -57,13 +97,8 @@ fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSam
     if !water.covers(local) {
         return None;
     }
-    let (rest, elevation) = water.surface(local);
+    let Found { rest, elevation, depth } = find(water, local)?;
     let fade = water.fade(rest);
-    let height = water.level + elevation;
-    let depth = water.ground_depth(local) + elevation;
-    if depth <= 0.0 {
-        return None;
-    }
     let to_world = |v: Vec3| {
         let turned = water.world_from_local.transform_vector2(v.xz());
         vec3(turned.x, v.y, turned.y)
@@ -77,7 +112,7 @@ fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSam
     let tilted = normal - vec3(flowing.slope.x, 0.0, flowing.slope.y) * normal.y;
     Some(WaterSample {
         water: entity,
-        height,
+        height: water.level + elevation,
         normal: to_world(tilted.normalize()),
         velocity: to_world(velocity),
         depth,

@@ -4,7 +4,7 @@ use super::corners;
 use glam::{DVec3, Vec3};
 use std::f64::consts::TAU;
 
-/// How often closed triangles go round a point: 1 inside a solid, 0 outside it and in its cavities, between them on the surface.
+/// How often closed triangles go round a point: 1 inside a solid, 0 outside it, ½ on a face of it.
 ///
 /// The sum of the solid angles of the triangles over 4π, each by tan(Ω/2) = a·(b × c) / (|a||b||c| + (a·b)|c| + (b·c)|a| + (c·a)|b|)
 /// (van Oosterom & Strackee, *The solid angle of a plane triangle*, 1983, eq. 8).

@@ -111,12 +111,14 @@ impl Hull {
     /// The hull of a mesh: a list of triangles as indices of points (m).
     ///
     /// Points that coincide become one, so that a mesh whose points are doubled for normals or texture coordinates is closed. The
-    /// winding of the triangles is made the same on both sides of every edge, and outside is outside. A shell that lies within
-    /// another is a cavity, unless its own winding is whole and the same as that of the shell around it: then it adds nothing to the
-    /// solid and is left out. Shells that cross each other both count in full; use [`Hull::union`] on them.
+    /// winding of the triangles is made the same on both sides of every edge, and outside is outside.
     ///
-    /// A cavity takes no part in the volume, and hence in the water displaced: for a body that stays dry inside, give its outer
-    /// shell only.
+    /// The solid is what water cannot enter: all that the outermost shells enclose. A shell, which is a connected piece of the surface,
+    /// is left out if it lies within another, however both are wound: it bounds a cavity that is sealed, or something in one, and
+    /// neither displaces water beyond what the outer shell does. The volume is hence that of a hollow body with its cavities, and a
+    /// density that is to give its mass is the mean over all of it. It counts as within if its faces do, asked at the middles of at most 8
+    /// that are spread over it; it may touch the outer one from within. Shells side by side all count, and those that cross each other
+    /// both count in full; use [`Hull::union`] on them.
     ///
     /// # Errors
     /// [`HullError::NoTriangles`], [`HullError::NotFinite`], [`HullError::Index`], [`HullError::Open`] or [`HullError::Flat`], each as

@@ -1,12 +1,15 @@
-//! Which way round the triangles of a surface go, and whether they close it.
+//! Which pieces of a surface bound what water cannot enter, and which way round their triangles go.
 
 use super::inside::winding;
-use super::{HullError, bounds, corners, edges, undirected};
+use super::{HullError, area_vector, bounds, corners, edges, undirected};
 use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
 /// Most triangles of a shell at whose middles is asked whether it lies within another.
 const PROBES: usize = 8;
+
+/// How far below the faces of a shell is asked, as a share of its length: more than rounding, so that shells which touch are told apart.
+const DEPTH: f64 = 1e-3;
 
 /// A connected piece of the surface.
 struct Shell {
@@ -14,13 +17,9 @@ struct Shell {
     /// Signed, m³.
     volume: f64,
     bounds: [Vec3; 2],
-    /// Whether the winding was the same on both sides of every edge from the start.
-    consistent: bool,
-    /// Whether the shell was turned inside out.
-    turned: bool,
 }
 
-/// The triangles, counter-clockwise seen from outside, as [`Hull::new`](super::Hull::new) says.
+/// The triangles of the outermost shells, counter-clockwise seen from outside, as [`Hull::new`](super::Hull::new) says.
 pub(super) fn oriented(points: &[Vec3], triangles: Vec<[u32; 3]>) -> Result<Vec<[u32; 3]>, HullError> {
     if triangles.is_empty() {
         return Err(HullError::Flat);
@@ -29,21 +28,17 @@ pub(super) fn oriented(points: &[Vec3], triangles: Vec<[u32; 3]>) -> Result<Vec<
     closed(points, shells.iter().flat_map(|shell| &shell.triangles))?;
     // Whatever holds another shell is larger than it, so what lies around a shell is settled before the shell is.
     shells.sort_by(|a, b| b.volume.abs().total_cmp(&a.volume.abs()));
-    let mut settled = Vec::<Shell>::with_capacity(shells.len());
-    for mut shell in shells {
-        let outward = shell.volume >= 0.0;
-        match container(points, &settled, &shell) {
-            None => shell.turn(!outward),
-            Some(around) if shell.consistent && outward != settled[around].turned => continue,
-            Some(_) => shell.turn(outward),
+    let mut outermost = Vec::<Shell>::with_capacity(shells.len());
+    for shell in shells {
+        if !outermost.iter().any(|around| around.holds(points, &shell)) {
+            outermost.push(shell.outward());
         }
-        settled.push(shell);
     }
-    Ok(settled.into_iter().flat_map(|shell| shell.triangles).collect())
+    Ok(outermost.into_iter().flat_map(|shell| shell.triangles).collect())
 }
 
 impl Shell {
-    fn new(points: &[Vec3], triangles: Vec<[u32; 3]>, consistent: bool) -> Self {
+    fn new(points: &[Vec3], triangles: Vec<[u32; 3]>) -> Self {
         let own: Vec<_> = triangles.as_flattened().iter().map(|&point| points[point as usize]).collect();
         let origin = own[0].as_dvec3();
         let tetrahedron = |&triangle: &[u32; 3]| {
@@ -51,36 +46,33 @@ impl Shell {
             a.dot(b.cross(c)) / 6.0
         };
         let volume = triangles.iter().map(tetrahedron).sum();
-        Self { triangles, volume, bounds: bounds(&own), consistent, turned: false }
+        Self { triangles, volume, bounds: bounds(&own) }
     }
 
-    fn turn(&mut self, inside_out: bool) {
-        if inside_out {
+    /// The shell with its normals to the outside.
+    fn outward(mut self) -> Self {
+        if self.volume < 0.0 {
             self.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-            self.turned = true;
         }
+        self
     }
 
-    fn may_hold(&self, other: &Self) -> bool {
-        self.bounds[0].cmple(other.bounds[0]).all() && other.bounds[1].cmple(self.bounds[1]).all()
+    /// Whether `other` lies within this shell, whichever way round its triangles go: with its box, and with what is just
+    /// below the middles of its faces.
+    fn holds(&self, points: &[Vec3], other: &Self) -> bool {
+        let may_hold = self.bounds[0].cmple(other.bounds[0]).all() && other.bounds[1].cmple(self.bounds[1]).all();
+        may_hold && other.probes(points).all(|probe| winding(points, &self.triangles, probe) > 0.5)
     }
 
-    /// Middles of some of its triangles, spread over the shell, m. Thin ones are as good as others.
+    /// Points just below the middles of some of its triangles, spread over the shell, m. Thin ones are as good as others.
     fn probes(&self, points: &[Vec3]) -> impl Iterator<Item = DVec3> {
         let step = self.triangles.len().div_ceil(PROBES);
-        self.triangles.iter().step_by(step).map(|&triangle| corners(points, triangle).into_iter().sum::<DVec3>() / 3.0)
+        let depth = DEPTH * libm::cbrt(self.volume);
+        self.triangles.iter().step_by(step).map(move |&triangle| {
+            let [a, b, c] = corners(points, triangle);
+            (a + b + c) / 3.0 - depth * area_vector([a, b, c]).normalize_or_zero()
+        })
     }
-}
-
-/// The shell whose solid holds all of `shell`, if any: the smallest that goes round it, if none of the others makes a cavity of it.
-fn container(points: &[Vec3], settled: &[Shell], shell: &Shell) -> Option<usize> {
-    let around: Vec<usize> = (0..settled.len()).filter(|&i| settled[i].may_hold(shell)).collect();
-    let holds = |i: usize, probe: DVec3| winding(points, &settled[i].triangles, probe).abs() > 0.5;
-    let within = |probe| around.iter().map(|&i| winding(points, &settled[i].triangles, probe)).sum::<f64>() > 0.5;
-    if around.is_empty() || !shell.probes(points).all(within) {
-        return None;
-    }
-    around.into_iter().rev().find(|&i| shell.probes(points).all(|probe| holds(i, probe)))
 }
 
 /// The connected pieces of the surface, each wound one way.
@@ -95,7 +87,7 @@ fn shells(points: &[Vec3], mut triangles: Vec<[u32; 3]>) -> Vec<Shell> {
             continue;
         }
         seen[seed] = true;
-        let (mut members, mut next, mut consistent) = (vec![seed], 0, true);
+        let (mut members, mut next) = (vec![seed], 0);
         while let Some(&triangle) = members.get(next) {
             next += 1;
             for &other in &neighbours[triangle] {
@@ -104,13 +96,12 @@ fn shells(points: &[Vec3], mut triangles: Vec<[u32; 3]>) -> Vec<Shell> {
                     members.push(other);
                     if edges(triangles[triangle]).iter().any(|edge| edges(triangles[other]).contains(edge)) {
                         triangles[other].swap(1, 2);
-                        consistent = false;
                     }
                 }
             }
         }
         members.sort_unstable();
-        shells.push(Shell::new(points, members.into_iter().map(|i| triangles[i]).collect(), consistent));
+        shells.push(Shell::new(points, members.into_iter().map(|i| triangles[i]).collect()));
     }
     shells
 }

@@ -27,8 +27,8 @@ impl Load {
     /// and the answer is what gives M that δ. The share θ of the stiffness that is taken at the end of the step is none for bodies that
     /// bob slowly, for which the solver's own step conserves energy, and nearly all for those that would bob within a few steps.
     ///
-    /// `others` is gravity and whatever else acts on the body, contacts excepted: without it a falling body would meet the drag of a
-    /// floating one. At rest in balance the answer is the pressure itself, without an error that depends on `dt`.
+    /// `others` is gravity and whatever else acts on the body: without it a falling body would meet the drag of a floating one, and one
+    /// that a rope holds would pull it as if it were let go. At rest in balance the answer is the pressure itself, without an error that depends on `dt`.
     pub fn over_step(&self, motion: &Motion, body: &Inertia, others: Wrench, dt: f32) -> Wrench {
         let water = Motion { linear: self.water_velocity, angular: Vec3::ZERO };
         let relative = Motion { linear: motion.linear - water.linear, angular: motion.angular };

@@ -94,23 +94,64 @@ fn polygonal_torus(major: f64, minor: f64, n: f64, m: f64) -> f32 {
     (part(m) * minor * minor * 2.0 * major * part(n)) as f32
 }
 
+/// Water cannot enter a sealed cavity, so it displaces as if solid, whichever way round the shells are wound.
 #[test]
-fn a_cavity_stays_a_hole() {
-    let hollow = 1.0 - 0.125;
-    holds(both(cube(), inside_out(sized(cube(), 0.5))), hollow);
-    holds(both(inside_out(sized(cube(), 0.5)), cube()), hollow);
-    holds(inside_out(both(cube(), inside_out(sized(cube(), 0.5)))), hollow);
-    let (points, mut triangles) = both(cube(), sized(cube(), 0.5));
-    triangles[3].swap(0, 1);
-    triangles[15].swap(0, 1);
-    holds((points, triangles), hollow);
+fn a_sealed_cavity_displaces_as_if_solid() {
+    for inner in [sized(cube(), 0.5), inside_out(sized(cube(), 0.5))] {
+        holds(both(cube(), inner.clone()), 1.0);
+        holds(both(inner.clone(), cube()), 1.0);
+        holds(both(inside_out(cube()), inner.clone()), 1.0);
+        let (points, mut triangles) = both(cube(), inner);
+        triangles[3].swap(0, 1);
+        triangles[15].swap(0, 1);
+        let hull = holds((points, triangles), 1.0);
+        assert_eq!(hull.triangles().len(), 12);
+    }
 }
 
+/// A hollow sphere floats with the draft of a solid one of the same mass: same volume, same moments, same load.
 #[test]
-fn a_solid_in_a_solid_adds_nothing_and_one_in_a_cavity_counts() {
-    holds(both(cube(), sized(cube(), 0.5)), 1.0);
-    let hollow = both(cube(), inside_out(sized(cube(), 0.5)));
-    holds(both(hollow, sized(cube(), 0.25)), 1.0 - 0.125 + 0.015625);
+fn a_hollow_sphere_is_the_hull_of_its_outer_shell() {
+    let sphere = |radius: f32| {
+        let ball = Hull::ball(radius).unwrap();
+        (ball.points().to_vec(), ball.triangles().to_vec())
+    };
+    let solid = holds(sphere(1.0), 4.0 / 3.0 * std::f32::consts::PI);
+    for inner in [sphere(0.95), inside_out(sphere(0.95))] {
+        let hollow = holds(both(sphere(1.0), inner), solid.volume());
+        near_point("centroid", hollow.centroid(), solid.centroid(), 1e-6);
+        near_matrix("moments", hollow.covariance(), solid.covariance(), 1e-5);
+    }
+    holds(both(sized(cube(), 2.0), inside_out(sphere(0.9))), 8.0);
+}
+
+/// However often shells are nested, only the outermost counts, and beside each other all of them do.
+#[test]
+fn only_outermost_shells_count() {
+    let nested = both(both(inside_out(sized(cube(), 0.25)), cube()), sized(cube(), 0.5));
+    holds(nested.clone(), 1.0);
+    holds(inside_out(nested.clone()), 1.0);
+    let beside = |x: f32| {
+        let (points, triangles) = nested.clone();
+        (points.iter().map(|point| *point + Vec3::X * x).collect::<Vec<_>>(), triangles)
+    };
+    let hull = holds(both(beside(-2.0), beside(2.0)), 2.0);
+    near_point("centroid", hull.centroid(), Vec3::ZERO, 1e-6);
+    // One that lies in the hole of a torus is not within it, though it is within its box.
+    let ring = torus(2.0, 0.5, 48, 24);
+    let volume = Hull::new(&ring.0, &ring.1).unwrap().volume();
+    holds(both(ring, sized(cube(), 0.9)), volume + 0.729);
+}
+
+/// Shells that touch from within are within, and the same shell made of other triangles counts once.
+#[test]
+fn touching_from_within_is_within() {
+    let (points, triangles) = sized(cube(), 0.5);
+    let on_the_floor = (points.iter().map(|point| *point - Vec3::Y * 0.25).collect::<Vec<_>>(), triangles);
+    holds(both(cube(), on_the_floor.clone()), 1.0);
+    holds(both(cube(), inside_out(on_the_floor)), 1.0);
+    let finer = Hull::cuboid(Vec3::splat(0.5)).unwrap().refined(0.4, 400);
+    holds(both(cube(), (finer.points().to_vec(), finer.triangles().to_vec())), 1.0);
 }
 
 #[test]
