@@ -27,8 +27,10 @@ pub struct WaterSimulation {
     pub ground: f32,
     /// Rain, mm/h, ≥ 0. Default 0.
     pub rain: f32,
-    /// Factor on the push of bodies that [disturb water](crate::interaction::DisturbsWater), 0…10. Default 1: that of a bluff body,
-    /// with a drag coefficient of 1. At 0 they push nothing.
+    /// Factor on the push of bodies, 0…10, default 1. At 0 they do nothing to the water.
+    ///
+    /// Floating bodies (feature `rapier`) take up the room of their hulls, and the water gets the opposite of what it does to them. Other
+    /// entities that [disturb water](crate::interaction::DisturbsWater) push it as bluff bodies, with a drag coefficient of 1.
     pub push: f32,
     /// The part of the water that is simulated, local xz, m. Default `None`: all of it. The water around it is as it were without
     /// simulation, still and with the current of its [`WaterFlow`](super::WaterFlow) map. Where that one enters the part or leaves it
@@ -57,7 +59,7 @@ pub enum SimulationBackend {
     /// In compute shaders, once a frame. Bodies and queries know the state of a few frames ago, carried on to the present.
     Gpu,
     /// On the CPU, in every fixed step. Bodies and queries know the present. The same on every
-    /// machine, unless bodies push it: they are seen once a frame.
+    /// machine, unless bodies that do not float push it: they are seen once a frame.
     Cpu,
 }
 
