@@ -232,7 +232,8 @@ impl Contact {
         if slam >= LULL || touches {
             let impact = self.impact.get_or_insert(Impact { from, speed, is_hard: false });
             if slam >= SPLASH && !impact.is_hard {
-                (impact.is_hard, impact.speed) = (true, speed);
+                // What touched while it rose may have been struck since.
+                (impact.is_hard, impact.speed) = (true, if speed > 0.0 { speed } else { meeting.speed });
             }
             if !is_under {
                 return None;

@@ -36,14 +36,16 @@ impl HeightSearch {
         if room.is_nan() || room <= of_exact {
             return None;
         }
+        if waves.total_amplitude() <= room {
+            return Some(Self { waves: WaveField::default(), step: 0.0 });
+        }
         let mut kept = waves.clone();
         let mut left_out = 0.0;
         while let Some(lowest) = lowest(&kept) {
             let mut fewer = kept.clone();
             let amplitude = left_out + fewer.trains.remove(lowest).amplitude;
-            // Half of the room is the search's, unless nothing is left to search for.
-            let share = if fewer.trains.is_empty() { 1.0 } else { 0.5 };
-            if amplitude > share * room * (1.0 - bound(&fewer)) {
+            // The other half of the room is the search's.
+            if amplitude > 0.5 * room * (1.0 - bound(&fewer)) {
                 break;
             }
             (kept, left_out) = (fewer, amplitude);
@@ -134,8 +136,8 @@ mod tests {
         assert_eq!(kept(0.0), None);
         assert!(kept(1e-3) > kept(1e-2) && kept(1e-2) > kept(1e-1));
         let height = field.total_amplitude();
-        assert_eq!((kept(1.01 * height), kept(f32::INFINITY)), (Some(0), Some(0)));
-        assert!(kept(0.9 * height) > Some(0));
+        assert_eq!((kept(1.1 * height), kept(f32::INFINITY)), (Some(0), Some(0)));
+        assert!(kept(0.5 * height) > Some(0));
     }
 
     #[test]
