@@ -2,7 +2,7 @@
 //!
 //! Nothing tells the boat where to go. Its propeller pushes it at a place below the stern and its rudder is a foil in the stream
 //! behind; with the water's push and resistance on the hull it gathers way, heels and slides through its turns.
-//! Without a window (`--out`) a script is at the helm.
+//! Without a window (`--out`) a script is at the helm: `--frames 310` is in the middle of its first turn.
 #[path = "common/boat.rs"]
 mod boat;
 #[path = "common/boat_mesh.rs"]
