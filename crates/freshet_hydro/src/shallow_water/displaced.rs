@@ -7,7 +7,7 @@ use glam::{IVec2, UVec2};
 /// For the water the bed is higher by that much: it keeps its volume and its momentum, its level rises, and it flows around. So
 ///
 /// * all water that there is stays in the book, and the level of a closed basin rises by V/A;
-/// * a body that moves along with the water disturbs nothing, wherever in the cells it is;
+/// * a body that moves along with the water disturbs nothing, but for what its sides do to the cells: 2 % of its draft;
 /// * the water is pushed by −ρ g ∫ h ∇D, and a body by −ρ g ∫ D ∇η. Over a level bed η = h + D + const, and the sum is
 ///   −ρ g ∫ ∇(h D + D²/2) = 0: what one gets the other gives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
