@@ -23,7 +23,8 @@ fn river(world: &mut World) {
     let mut wall = |half: Vec3, at: Vec3| {
         world.spawn((RigidBody::Fixed, Collider::cuboid(half.x, half.y, half.z), Transform::from_translation(at)));
     };
-    wall(vec3(LENGTH, 20.0, WIDTH), vec3(0.0, LEVEL - DEPTH - 20.0, 0.0));
+    // Wider than the river: what is thrown out lies beside it.
+    wall(vec3(2000.0, 50.0, 2000.0), vec3(0.0, LEVEL - DEPTH - 50.0, 0.0));
     for side in [-1.0, 1.0] {
         wall(vec3(LENGTH, 100.0, 5.0), vec3(0.0, LEVEL, side * (0.5 * WIDTH + 4.5)));
         wall(vec3(5.0, 100.0, WIDTH), vec3(side * (0.5 * LENGTH + 4.5), LEVEL, 0.0));
@@ -63,7 +64,7 @@ fn spawn(world: &mut World, i: u32, height: f32) -> Entity {
     body.id()
 }
 
-/// What happens to bodies once a second: one is shot into the water, one scaled, one replaced, and what has come far goes back.
+/// What happens to bodies once a second: one is shot into the water, one scaled, one replaced, and what has come far, or out of the river, goes back.
 fn disturb(world: &mut World, bodies: &mut [Entity], second: u32) {
     let count = bodies.len() as u32;
     let chosen = |k: u32| ((second * 7 + k * 31) % count) as usize;
@@ -74,8 +75,8 @@ fn disturb(world: &mut World, bodies: &mut [Entity], second: u32) {
     bodies[chosen(2)] = spawn(world, second + 3, 5.0);
     for &body in bodies.iter() {
         let mut pose = world.get_mut::<Transform>(body).unwrap();
-        if pose.translation.x > 0.4 * LENGTH {
-            pose.translation.x -= 0.8 * LENGTH;
+        if pose.translation.x > 0.4 * LENGTH || pose.translation.abs().xz().cmpgt(0.5 * vec2(LENGTH, WIDTH)).any() {
+            pose.translation = vec3(-0.4 * LENGTH, LEVEL + 6.0, pose.translation.z.clamp(-0.4 * WIDTH, 0.4 * WIDTH));
         }
     }
 }

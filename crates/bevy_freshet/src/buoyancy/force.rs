@@ -3,6 +3,7 @@
 use super::{
     body::Body,
     contact::Felt,
+    exchange::Exerted,
     floating::{Buoyancy, Floating},
     held::{Step, inertia},
 };
@@ -125,7 +126,7 @@ pub(super) fn lend_forces(
     for (handle, link, mut state, mut buoyancy) in &mut floating {
         let Ok((mut set, config)) = contexts.get_mut(link.0) else { continue };
         let Some(body) = set.bodies.get(handle.0) else { continue };
-        state.exchanging.force = Vec3::ZERO;
+        state.exchanging.felt = None;
         let steps = config.physics_pipeline_active && dt > 0.0;
         let is_driven = !body.is_dynamic();
         if !steps || !body.is_enabled() || state.form.is_none() || !is_driven && body.mass() <= 0.0 {
@@ -142,7 +143,8 @@ pub(super) fn lend_forces(
         state.felt = Some(Felt { load, center, motion: motion(body), mass: body.mass(), step: dt });
         let own = own_push(body, config.gravity);
         let wrench = force(&load, body, own + state.held.0, dt);
-        state.exchanging.force = wrench.force - load.pressure.force;
+        let pressure = load.pressure.force;
+        state.exchanging.felt = Some(Exerted { pressure, resistance: wrench.force - pressure });
         let height = state.footprint.at(center.xz()).map(|water| water.height);
         buoyancy.set_if_neq(Buoyancy {
             volume: buoyancy.volume,

@@ -36,7 +36,13 @@ impl Displacement {
 
     /// Adds the columns of a body: cells and displaced volume per area, m. Each is shared with its neighbours, as far as they have
     /// `room`: how deep the ground of a cell lies below the surface, m, and nothing outside the domain. No cell displaces more than that.
-    pub fn add(&mut self, columns: impl Iterator<Item = (UVec2, f32)>, room: impl Fn(IVec2) -> Option<f32>) {
+    /// Gives what was added; a cell may be there several times.
+    pub fn add(
+        &mut self,
+        columns: impl Iterator<Item = (UVec2, f32)>,
+        room: impl Fn(IVec2) -> Option<f32>,
+    ) -> &[Displaced] {
+        let first = self.cells.len();
         for (cell, depth) in columns {
             let Some(most) = room(cell.as_ivec2()) else { continue };
             let depth = depth.min(most);
@@ -52,6 +58,7 @@ impl Displacement {
             }
             self.cells.push(Displaced { cell, depth: own });
         }
+        &self.cells[first..]
     }
 
     /// Every cell once, row by row, with what all bodies displace in it.

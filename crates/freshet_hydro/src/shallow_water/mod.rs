@@ -8,6 +8,7 @@ mod edges;
 mod exchange;
 mod field;
 mod push;
+mod reaction;
 mod rows;
 mod scheme;
 mod series;
@@ -102,6 +103,8 @@ pub struct ShallowWater {
     pushes: Vec<Push>,
     /// Cells whose `bed` bodies raise.
     raised: Vec<displaced::Raised>,
+    /// Room for what bodies do.
+    window: reaction::Window,
     rows: Vec<Rows>,
     /// Greatest |u| + c of `now`, m/s.
     fastest: f32,
@@ -144,6 +147,7 @@ impl ShallowWater {
             rates: Vec::new(),
             pushes: Vec::new(),
             raised: Vec::new(),
+            window: reaction::Window::default(),
             rows: vec![Rows::default(); rows.div_ceil(step::band(rows))],
             fastest: 0.0,
             time: 0.0,

@@ -16,7 +16,7 @@ pub(super) fn band(rows: usize) -> usize {
 }
 
 /// The conserved numbers of all cells, row by row.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct State {
     pub depth: Vec<f32>,
     pub carry: Vec<f32>,
@@ -124,6 +124,13 @@ pub(super) fn step(new: &mut State, old: &State, around: &Surround, numbers: Num
         total.given += rows.tally.given;
     }
     total
+}
+
+/// The same on this thread, as one band.
+pub(super) fn step_alone(new: &mut State, old: &State, around: &Surround, numbers: Numbers, rows: &mut Rows) {
+    let State { depth, carry, discharge_x, discharge_z } = new;
+    let new = StateMut { depth, carry, discharge_x, discharge_z };
+    Arch::new().dispatch(Band { rows, new, old, around, numbers, first: 0 });
 }
 
 /// The work on one band, compiled once for every set of vector instructions.

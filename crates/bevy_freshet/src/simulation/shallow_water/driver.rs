@@ -1,6 +1,6 @@
 //! Keeps the simulation of every water: makes it, changes it, advances it, and says what it has come to.
 use super::{
-    Exchange, ShallowFrame, ShallowWork,
+    ShallowFrame, ShallowWork,
     control::{Asked, Pace},
     domain::{Domain, ground_below, set_edges, set_rims, set_walls, usable_area, usable_ground},
     frame::pictures,
@@ -32,8 +32,10 @@ pub(crate) struct Simulated {
     pub(super) simulation: Option<Box<Simulation>>,
     /// What silhouettes do to its cells.
     pub pushes: Vec<Push>,
-    /// What floating bodies do to them.
-    pub exchange: Exchange,
+    /// Forces that floating bodies return to them.
+    pub forces: Vec<Push>,
+    #[cfg(feature = "rapier")]
+    pub exchange: super::Exchange,
     pub pictures: Option<[Handle<Image>; 2]>,
     pub(super) asked: Asked,
 }
@@ -237,10 +239,10 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
         return;
     };
     // Those of a simulation of another size are none of this one.
-    let pushes = [simulated.pushes.as_slice(), &simulated.exchange.forces].concat();
+    let pushes = [simulated.pushes.as_slice(), &simulated.forces].concat();
     if simulation.water.set_pushes(&pushes).is_err() {
         simulated.pushes.clear();
-        simulated.exchange.forces.clear();
+        simulated.forces.clear();
         _ = simulation.water.set_pushes(&[]);
     }
     simulation.area = area;

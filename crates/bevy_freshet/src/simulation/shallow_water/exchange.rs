@@ -2,16 +2,13 @@
 use super::driver::Simulated;
 use crate::{body::ResolvedWater, simulation::Raster};
 use bevy::prelude::*;
-use freshet_hydro::shallow_water::{Displacement, Push};
+use freshet_hydro::shallow_water::{Displaced, Displacement, Push};
 use std::{collections::BTreeMap, sync::Arc};
 
-/// What all floating bodies do to a simulated water, as of the last fixed step.
+/// The room that floating bodies take up in a simulated water, as of the last fixed step.
 #[derive(Default)]
 pub(crate) struct Exchange {
-    /// Room that they take up.
     pub displacement: Displacement,
-    /// Forces that they return.
-    pub forces: Vec<Push>,
     /// What they displaced before, m, by index of the cell.
     before: BTreeMap<usize, f32>,
 }
@@ -20,9 +17,9 @@ impl Simulated {
     /// Takes all bodies out of the water, so that they can be put in where they are now. False if there is no simulation.
     pub fn take_bodies_out(&mut self) -> bool {
         let Some(simulation) = self.simulation.as_deref_mut() else { return false };
-        let Exchange { displacement, forces, before } = &mut self.exchange;
+        let Exchange { displacement, before } = &mut self.exchange;
         displacement.clear();
-        forces.clear();
+        self.forces.clear();
         before.clear();
         before.extend(simulation.water.raised().map(|(index, [ground, bed])| (index, bed - ground)));
         _ = simulation.water.set_displaced(&[]);
@@ -60,6 +57,12 @@ impl Simulated {
         }
     }
 
+    /// Force on the water per density (local x and z, m⁴/s²) by the room that a body takes up, over the next `dt` (s).
+    pub fn reaction(&mut self, own: &[Displaced], dt: f64) -> Vec2 {
+        let Some(simulation) = self.simulation.as_deref_mut().filter(|_| dt > 0.0) else { return Vec2::ZERO };
+        simulation.water.reaction(own, dt)
+    }
+
     /// Spreads a force on the water (local x and z, per density, m⁴/s²) over the cells of a body, by what it displaces and how much
     /// water is there.
     pub fn push_back(&mut self, force: Vec2, columns: &[(UVec2, f32)]) {
@@ -76,7 +79,7 @@ impl Simulated {
         if sum > 0.0 && force.is_finite() {
             let per_weight = force / (sum * cell * cell);
             let push = |(cell, weight)| Push { cell, force: per_weight * weight, ..default() };
-            self.exchange.forces.extend(weighted().map(push));
+            self.forces.extend(weighted().map(push));
         }
     }
 }

@@ -14,6 +14,7 @@
 mod control;
 mod domain;
 mod driver;
+#[cfg(feature = "rapier")]
 mod exchange;
 mod frame;
 mod numbers;
@@ -28,6 +29,7 @@ mod tests;
 mod usable;
 
 pub(crate) use driver::Simulated;
+#[cfg(feature = "rapier")]
 pub(crate) use exchange::Exchange;
 pub(crate) use frame::{GpuWork, Ground, ShallowFrame, ShallowWork, StartState};
 pub(crate) use numbers::{GpuEdge, GpuPush, GpuShallow};
