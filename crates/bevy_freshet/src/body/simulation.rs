@@ -27,7 +27,7 @@ pub struct WaterSimulation {
     pub ground: f32,
     /// Rain, mm/h, ≥ 0. Default 0.
     pub rain: f32,
-    /// Factor on the push of bodies, 0…10, default 1. At 0 they do nothing to the water.
+    /// Factor on what resists bodies when it pushes the water, 0…10, default 1. At 0 they do nothing to the water.
     ///
     /// Floating bodies (feature `rapier`) take up the room of their hulls, and the water gets the opposite of what it does to them. Other
     /// entities that [disturb water](crate::interaction::DisturbsWater) push it as bluff bodies, with a drag coefficient of 1.

@@ -125,7 +125,6 @@ impl Body {
     ) -> Result<(), String> {
         self.form = None;
         self.submerged = None;
-        self.exchanging = Exchanging::default();
         self.contact.forget_step();
         self.solids = solids;
         if self.solids.is_empty() {

@@ -5,7 +5,7 @@
 //! column feeds on the level that it has raised itself, and waves much shorter than the body leave it as it is. After the forces are
 //! known, [`return_forces`] gives the water the opposite of them; that of the pressure it has already got, but for rounding (see
 //! [`Displaced`](freshet_hydro::shallow_water::Displaced)).
-use super::body::Body;
+use super::{body::Body, floating::Floating};
 use crate::{
     body::{ResolvedWater, WaterSimulation},
     interaction::BodyMotion,
@@ -42,9 +42,11 @@ pub(super) struct Exchanging {
     depths: Vec<(UVec2, f32)>,
     /// Share of its columns that the water has made room for.
     share: f32,
+    /// Where the body was in which water, and the time of that, s.
+    before: Option<(Entity, f64, Vec3)>,
     /// The same, spread as the water has it.
     own: Vec<Displaced>,
-    /// What the water does to the body in this step, unless it sleeps.
+    /// What the water does to the body; if it sleeps, what it did when it went to sleep.
     pub felt: Option<Exerted>,
 }
 
@@ -92,9 +94,15 @@ impl Exchanging {
         self.columns.rasterise(hull, from_body, &local_plane(surface, water), &raster);
     }
 
-    /// Makes room within [`APPEARING`], and at once for a body that comes from outside.
-    fn appear(&mut self, dt: f32, cell: f32) {
+    /// Makes room within [`APPEARING`] for a body that is suddenly there, and at once for one that comes from outside: `now` is
+    /// the water with its time (s) and the body's place in it, and `way` how far (m) it may have moved.
+    fn appear(&mut self, now: (Entity, f64, Vec3), way: f32, dt: f32, cell: f32) {
         let is_dry = self.columns.volume() <= 0.0;
+        let goes_on =
+            |before: (Entity, f64, Vec3)| before.0 == now.0 && before.1 <= now.1 && before.2.distance(now.2) <= way;
+        if !self.before.replace(now).is_some_and(goes_on) {
+            self.share = 0.0;
+        }
         self.share = if is_dry { 1.0 } else { (self.share + dt / APPEARING).min(1.0) };
         let per_area = self.share / (cell * cell);
         self.depths.clear();
@@ -102,15 +110,26 @@ impl Exchanging {
     }
 }
 
+/// Whether the water's clock runs.
+fn runs(settings: &WaterSimulation) -> bool {
+    !settings.paused && settings.speed > 0.0
+}
+
+/// Whether bodies act on the water.
+fn acts(settings: &WaterSimulation) -> bool {
+    runs(settings) && settings.push > 0.0
+}
+
 /// Puts all bodies into the simulated waters that they are in.
 pub(super) fn displace(
-    mut bodies: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Body, &mut BodyMotion)>,
+    mut bodies: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Body, &mut BodyMotion), With<Floating>>,
     contexts: Query<&RapierRigidBodySet>,
     mut waters: Query<(&mut Simulated, &mut ResolvedWater, &WaterSimulation)>,
     time: Res<Time>,
 ) {
     let mut any = false;
-    for (mut simulated, _, _) in &mut waters {
+    // Water that stands still keeps the bodies that it has.
+    for (mut simulated, ..) in waters.iter_mut().filter(|water| runs(water.2)) {
         any |= simulated.take_bodies_out();
     }
     for (handle, link, mut state, mut motion) in &mut bodies {
@@ -121,10 +140,12 @@ pub(super) fn displace(
         let Body { form: Some(form), footprint, exchanging, .. } = &mut *state else { continue };
         let (Some(entity), Some(surface)) = (footprint.water, footprint.plane()) else { continue };
         let Ok((mut simulated, water, settings)) = waters.get_mut(entity) else { continue };
-        let Some(Raster { origin, cell, size }) = simulated.raster().filter(|_| settings.push > 0.0) else { continue };
+        let Some(Raster { origin, cell, size }) = simulated.raster().filter(|_| acts(settings)) else { continue };
         let raster = ColumnRaster { origin, cell, size };
         exchanging.cut(&form.hull, body, &surface, &water, raster);
-        exchanging.appear(time.delta_secs(), raster.cell);
+        let now = (entity, simulated.time(), body.translation());
+        let way = cell + 2.0 * time.delta_secs() * body.linvel().length();
+        exchanging.appear(now, way, time.delta_secs(), cell);
         exchanging.water = Some(entity);
         motion.exchanges_with = Some(entity);
         motion.is_resolved = form.hull.length() >= RESOLVED * raster.cell;
@@ -136,7 +157,7 @@ pub(super) fn displace(
         exchanging.own.extend_from_slice(own);
         simulated.exchange.displacement = displacement;
     }
-    for (mut simulated, mut water, _) in &mut waters {
+    for (mut simulated, mut water, _) in waters.iter_mut().filter(|water| runs(water.2)) {
         simulated.put_bodies_in(&mut water);
     }
 }
@@ -144,9 +165,10 @@ pub(super) fn displace(
 /// Hands the waters what their bodies feel of them, the other way round.
 ///
 /// The raised bed pushes the water as the scheme sums it, the pressure the body as its hull does: the difference goes to the water, so
-/// that what one of them gains the other loses. Waves that ride on the water are none of it: their pressure has no answer.
+/// that what one of them gains the other loses. Not where waves ride on the water, whose pressure has no answer: there up to a tenth of
+/// the momentum of the pressure is made or lost.
 pub(super) fn return_forces(
-    bodies: Query<&Body>,
+    bodies: Query<&Body, (With<Floating>, With<RapierRigidBodyHandle>)>,
     mut waters: Query<(&mut Simulated, &ResolvedWater, &WaterSimulation)>,
     time: Res<Time>,
 ) {
@@ -154,12 +176,17 @@ pub(super) fn return_forces(
         let exchanging = &state.exchanging;
         let (Some(entity), Some(felt)) = (exchanging.water, exchanging.felt) else { continue };
         let Ok((mut simulated, water, settings)) = waters.get_mut(entity) else { continue };
+        if !acts(settings) {
+            continue;
+        }
         let factor = if settings.push.is_finite() { settings.push.clamp(0.0, 10.0) } else { 1.0 };
         let local = |force: Vec3| water.local_from_world.transform_vector2(force.xz());
-        let mut force = -factor / WATER_DENSITY * local(felt.resistance);
+        // In water that runs faster than its bodies a force acts for longer.
+        let per_density = 1.0 / (WATER_DENSITY * settings.speed);
+        let mut force = -factor * per_density * local(felt.resistance);
         if water.waves.trains.is_empty() {
-            let pressed = -local(felt.pressure) / WATER_DENSITY;
-            let dt = time.delta_secs_f64() * f64::from(settings.speed.clamp(0.0, 1e4));
+            let pressed = -per_density * local(felt.pressure);
+            let dt = time.delta_secs_f64() * f64::from(settings.speed);
             force += pressed - simulated.reaction(&exchanging.own, dt);
         }
         simulated.push_back(force, &exchanging.depths);

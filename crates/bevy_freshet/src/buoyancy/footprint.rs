@@ -88,7 +88,8 @@ impl Footprint {
             _ => Vec2::ZERO,
         };
         let height = mean - slope.dot(self.min + 0.5 * self.size);
-        (count > 0 && slope.is_finite()).then_some(SurfacePlane { height, slope })
+        // Steeper is no surface, but the brim of a pond.
+        (count > 0 && slope.length() < 1.0).then_some(SurfacePlane { height, slope })
     }
 
     /// Whether its corners say all.

@@ -126,10 +126,10 @@ pub(super) fn lend_forces(
     for (handle, link, mut state, mut buoyancy) in &mut floating {
         let Ok((mut set, config)) = contexts.get_mut(link.0) else { continue };
         let Some(body) = set.bodies.get(handle.0) else { continue };
-        state.exchanging.felt = None;
         let steps = config.physics_pipeline_active && dt > 0.0;
         let is_driven = !body.is_dynamic();
         if !steps || !body.is_enabled() || state.form.is_none() || !is_driven && body.mass() <= 0.0 {
+            state.exchanging.felt = None;
             continue;
         }
 

@@ -25,7 +25,8 @@
 //! * With `substeps` above 1, and while `TimestepMode::Interpolated` catches up, a force holds for all of the step.
 //! * bevy_rapier 0.36 writes back a wrong `Transform` for bodies below a *rotated* parent (its `writeback_rigid_bodies`
 //!   scales after rotating); moved and scaled parents are right, and the solver's own pose always is.
-//! * Waves that ride on simulated water push bodies and are not pushed back. A body of less than a cell is spread over three by three of them.
+//! * Waves that ride on simulated water push bodies and are not pushed back, and where they are up to a tenth of the momentum that is exchanged by
+//!   pressure is made or lost. A body of less than a cell is spread over three by three of them.
 //! * On the GPU, a simulated water learns of bodies in the next frame, and they of it when its state has come back.
 //! * A mesh holds what its outermost closed shells enclose ([`Hull::new`](freshet_hydro::hull::Hull::new)): sealed cavities stay dry for ever
 //!   and displace water, and what is open stays filled, so that neither leaks.

@@ -9,7 +9,7 @@ use bevy::{math::Affine3A, prelude::*};
 /// one: a part that turns by itself, such as a paddle wheel, gets a `DisturbsWater` of its own. A moving `Transform` is
 /// enough, no physics is needed.
 ///
-/// Remove it from a body that shall leave no trace.
+/// Remove it from a body that shall leave no trace; one that floats in simulated water still takes up room in it.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 #[require(Transform, BodyMotion)]

@@ -62,6 +62,9 @@ impl Columns {
             return;
         }
         self.choose_window(raster.size);
+        if self.volumes.is_empty() {
+            return;
+        }
         let corner = Vec3::new(self.first.x as f32, 0.0, self.first.y as f32);
         self.points.iter_mut().for_each(|point| *point -= corner);
         let area = f64::from(raster.cell) * f64::from(raster.cell);
@@ -77,7 +80,7 @@ impl Columns {
         self.size = UVec2::ZERO;
     }
 
-    /// The window of cells that the hull's wet points are in, widened by the points that edges lead to.
+    /// The window of cells that the hull is in, if any of it is wet.
     fn choose_window(&mut self, raster: UVec2) {
         let places = || self.points.iter().map(|point| Vec2::new(point.x, point.z));
         let least = places().fold(Vec2::INFINITY, Vec2::min).max(Vec2::ZERO);
@@ -195,7 +198,14 @@ impl Polygon {
     fn cells(&self) -> (IVec2, IVec2) {
         let place = |point: &Vec3| Vec2::new(point.x, point.z);
         let least = self.corners().iter().map(place).fold(Vec2::INFINITY, Vec2::min).floor().as_ivec2();
-        let most = self.corners().iter().map(place).fold(Vec2::NEG_INFINITY, Vec2::max).ceil().as_ivec2() - 1;
+        let most = self
+            .corners()
+            .iter()
+            .map(place)
+            .fold(Vec2::NEG_INFINITY, Vec2::max)
+            .ceil()
+            .as_ivec2()
+            .saturating_sub(IVec2::ONE);
         (least, most.max(least))
     }
 

@@ -35,7 +35,7 @@ impl Displacement {
     }
 
     /// Adds the columns of a body: cells and displaced volume per area, m. Each is shared with its neighbours, as far as they have
-    /// `room`: how deep the ground of a cell lies below the surface, m, and nothing outside the domain. No cell displaces more than that.
+    /// `room`: how deep the ground of a cell lies below the surface, m, and nothing outside the domain. No column is higher than that.
     /// Gives what was added; a cell may be there several times.
     pub fn add(
         &mut self,
@@ -100,7 +100,7 @@ impl ShallowWater {
                 return Err(number("a displaced depth", "from 0 to 1000 km", *depth));
             }
         }
-        for Raised { index, ground, .. } in self.raised.drain(..) {
+        for Raised { index, ground, .. } in self.raised.drain(..).rev() {
             self.bed[index] = ground;
         }
         let mut lost = 0.0;

@@ -15,7 +15,7 @@ use glam::{UVec2, Vec2};
 /// with the velocity v of the body, its drag coefficient C, its length L (m) and the depth D (m) of what it displaces, averaged over
 /// the cell. Over all cells of a body of draft D that covers L² it sums to ½ ρ C (L D) |v − u| (v − u), whatever the size of a cell.
 ///
-/// It moves no volume, and water is never faster for it than the body.
+/// It moves no volume, and by the drag water is never faster than the body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Push {
     /// Column and row of the cell.

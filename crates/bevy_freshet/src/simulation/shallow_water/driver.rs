@@ -233,6 +233,8 @@ fn prepare(water: &mut WatersItem, gpu: &UsableGpu, reported: &mut Reported) {
     let fits = simulated.simulation.as_ref().is_some_and(|simulation| simulation.made_of == made_of);
     if simulated.asked.takes_reset() || !fits {
         simulated.simulation = begin(made_of, entity, resolved, settings, gpu, reported);
+        simulated.pushes.clear();
+        simulated.forces.clear();
     }
     let Some(simulation) = &mut simulated.simulation else {
         water.state.set_if_neq(default());

@@ -14,6 +14,11 @@ pub(crate) struct Exchange {
 }
 
 impl Simulated {
+    /// Time that has been simulated, s: less than before where it has begun anew.
+    pub fn time(&self) -> f64 {
+        self.simulation.as_deref().map_or(0.0, |simulation| simulation.water.time())
+    }
+
     /// Takes all bodies out of the water, so that they can be put in where they are now. False if there is no simulation.
     pub fn take_bodies_out(&mut self) -> bool {
         let Some(simulation) = self.simulation.as_deref_mut() else { return false };
@@ -76,11 +81,10 @@ impl Simulated {
             })
         };
         let sum: f32 = weighted().map(|(_, weight)| weight).sum();
-        if sum > 0.0 && force.is_finite() {
-            let per_weight = force / (sum * cell * cell);
-            let push = |(cell, weight)| Push { cell, force: per_weight * weight, ..default() };
-            self.forces.extend(weighted().map(push));
-        }
+        let per_weight = force / (sum * cell * cell);
+        let push = |(cell, weight)| Push { cell, force: per_weight * weight, ..default() };
+        // What is beyond all bounds would be refused with everything else.
+        self.forces.extend(weighted().map(push).filter(|push| push.force.abs().max_element() < 1e6));
     }
 }
 
