@@ -12,6 +12,7 @@ mod buoyancy;
 mod buoyancy_cost;
 #[cfg(feature = "rapier")]
 mod buoyancy_gizmos;
+#[cfg(feature = "rapier")]
 mod buoyancy_joints;
 #[cfg(feature = "rapier")]
 mod buoyancy_messages;
