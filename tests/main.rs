@@ -19,6 +19,8 @@ mod buoyancy_messages;
 #[cfg(feature = "rapier")]
 mod buoyancy_ponds;
 #[cfg(feature = "rapier")]
+mod buoyancy_shapes;
+#[cfg(feature = "rapier")]
 mod endurance;
 #[cfg(feature = "rapier")]
 mod exchange;

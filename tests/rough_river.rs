@@ -55,16 +55,13 @@ fn spawn(world: &mut World, i: u32, height: f32) -> Entity {
     let density = [20.0, 200.0, 600.0, 950.0, 3000.0][(i / 5 % 5) as usize];
     let floating = Floating { model, ..Floating::with_density(density) };
     let (x, z) = ((i * 37 % 100) as f32 - 50.0, (i * 53 % 23) as f32 - 11.0);
-    let mut body = world.spawn((RigidBody::Dynamic, shape, floating, Velocity::zero(), Ccd::enabled()));
-    body.insert(Transform::from_xyz(x, LEVEL + height, z).with_scale(Vec3::splat(if i.is_multiple_of(9) {
-        1.6
-    } else {
-        1.0
-    })));
-    body.id()
+    let scale = Vec3::splat(if i.is_multiple_of(9) { 1.6 } else { 1.0 });
+    let pose = Transform::from_xyz(x, LEVEL + height, z).with_scale(scale);
+    world.spawn((RigidBody::Dynamic, shape, floating, Velocity::zero(), Ccd::enabled(), pose)).id()
 }
 
-/// What happens to bodies once a second: one is shot into the water, one scaled, one replaced, and what has come far, or out of the river, goes back.
+/// What happens to bodies once a second: one is shot into the water, one scaled, one replaced, and what has come far, or out of the
+/// river, goes back.
 fn disturb(world: &mut World, bodies: &mut [Entity], second: u32) {
     let count = bodies.len() as u32;
     let chosen = |k: u32| ((second * 7 + k * 31) % count) as usize;

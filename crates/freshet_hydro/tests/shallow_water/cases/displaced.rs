@@ -1,7 +1,8 @@
 //! Bodies that take up room in the water.
 use super::{Run, fastest, land, push::momentum, still};
 use freshet_hydro::{
-    hull::{ColumnRaster, Columns, Hull, SurfacePlane},
+    grid::Raster,
+    hull::{Columns, Hull, SurfacePlane},
     shallow_water::{Displaced, Displacement, ShallowWater},
     waves::GRAVITY,
 };
@@ -15,7 +16,7 @@ fn ferry() -> Hull {
 /// Puts the hull, turned by `turn` about y, with its keel at this elevation into water whose level is 0 there.
 fn put(water: &mut ShallowWater, hull: &Hull, at: Vec2, turn: f32, keel: f32) -> Vec<Displaced> {
     let (size, cell) = (water.size(), water.cell_size());
-    let raster = ColumnRaster { origin: -0.5 * cell * size.as_vec2(), cell, size };
+    let raster = Raster { origin: -0.5 * cell * size.as_vec2(), cell, size };
     let pose = Affine3A::from_rotation_translation(Quat::from_rotation_y(turn), Vec3::new(at.x, 1.0 + keel, at.y));
     let mut columns = Columns::default();
     columns.rasterise(hull, pose, &SurfacePlane::default(), &raster);
