@@ -15,13 +15,17 @@ struct Step {
 }
 
 /// Quick checks first; those that compile the same things the same way follow one another.
-const STEPS: [Step; 6] = [
+const STEPS: [Step; 7] = [
     Step::new("format", &["fmt", "--all", "--check"]),
     Step::new("lints", &["clippy", "--workspace", "--all-targets", "--all-features", "--", "-D", "warnings"]),
     // The library alone: dev-dependencies could switch on what a user of the bare plugin does not have.
     Step::new(
         "lints without features",
         &["clippy", "--package", "bevy_freshet", "--lib", "--no-default-features", "--", "-D", "warnings"],
+    ),
+    Step::new(
+        "lints of tests without features",
+        &["clippy", "--package", "bevy_freshet", "--tests", "--no-default-features", "--", "-D", "warnings"],
     ),
     Step {
         rustdocflags: Some("-D warnings"),
