@@ -28,7 +28,7 @@ impl Reported {
         if range.contains(&value) {
             return value;
         }
-        let used = if value.is_nan() { fallback } else { value.clamp(*range.start(), *range.end()) };
+        let used = nearest(value, &range, fallback);
         self.warn(entity, field, format_args!("is {value}, outside {}…{}; {used} is used", range.start(), range.end()));
         used
     }
@@ -44,6 +44,11 @@ impl Reported {
     ) -> Vec3 {
         Vec3::from_array(core::array::from_fn(|i| self.clamp(entity, field, value[i], range.clone(), fallback[i])))
     }
+}
+
+/// `value`, or the bound of `range` that is nearest to it; `fallback` for NaN.
+pub(crate) fn nearest(value: f32, range: &core::ops::RangeInclusive<f32>, fallback: f32) -> f32 {
+    if value.is_nan() { fallback } else { value.clamp(*range.start(), *range.end()) }
 }
 
 /// Forgets complaints about entities that are gone, so that a reused identifier is heard again.

@@ -5,7 +5,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use glam::{UVec2, Vec2};
+use glam::{IVec2, UVec2, Vec2};
 use thiserror::Error;
 
 /// Values at the centres of square cells, centred on the local origin of the xz plane.
@@ -17,6 +17,36 @@ pub struct Grid<T> {
     size: UVec2,
     cell_size: f32,
     values: Vec<T>,
+}
+
+/// Where square cells lie on the xz plane, without what is in them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Raster {
+    /// The north-west corner of the first cell (x, z), m.
+    pub origin: Vec2,
+    /// Side of a cell, m, > 0.
+    pub cell: f32,
+    /// Columns and rows.
+    pub size: UVec2,
+}
+
+impl Raster {
+    /// Whether it meets the rectangle between `min` and `max` (x, z), m.
+    pub fn meets(&self, min: Vec2, max: Vec2) -> bool {
+        let last = self.origin + self.size.as_vec2() * self.cell;
+        min.cmple(last).all() && max.cmpge(self.origin).all()
+    }
+
+    /// Place of a cell in a list row by row, if there is such a cell.
+    pub fn index(&self, cell: IVec2) -> Option<usize> {
+        let is_inside = cell.cmpge(IVec2::ZERO).all() && cell.cmplt(self.size.as_ivec2()).all();
+        is_inside.then(|| cell.y as usize * self.size.x as usize + cell.x as usize)
+    }
+
+    /// Middle of a cell (x, z), m.
+    pub fn middle(&self, cell: IVec2) -> Vec2 {
+        self.origin + (cell.as_vec2() + 0.5) * self.cell
+    }
 }
 
 /// Why values do not make a [`Grid`].

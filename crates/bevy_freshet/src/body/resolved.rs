@@ -61,6 +61,12 @@ pub(crate) struct ResolvedBed {
 }
 
 impl ResolvedWater {
+    /// A direction of the water's frame in the world.
+    pub fn direction_to_world(&self, direction: Vec3) -> Vec3 {
+        let turned = self.world_from_local.transform_vector2(direction.xz());
+        vec3(turned.x, direction.y, turned.y)
+    }
+
     /// Whether local `place` lies in the water's rectangle.
     pub fn covers(&self, place: Vec2) -> bool {
         place.abs().cmple(self.half_size).all() && self.half_size.min_element() > 0.0

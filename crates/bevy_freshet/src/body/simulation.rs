@@ -1,6 +1,6 @@
 //! Water that is simulated: what to simulate, and what acts on it from outside.
 use super::SimulationState;
-use crate::simulation::Simulated;
+use crate::{report::Reported, simulation::Simulated};
 use bevy::prelude::*;
 pub use freshet_hydro::shallow_water::{CLOSED, DomainSide, Edge, Series};
 
@@ -81,6 +81,18 @@ pub enum SimulationStart {
         /// Level, m over the still level.
         level: f32,
     },
+}
+
+impl WaterSimulation {
+    /// Checked [`WaterSimulation::speed`].
+    pub(crate) fn usable_speed(&self, entity: Entity, reported: &mut Reported) -> f32 {
+        reported.clamp(entity, "WaterSimulation::speed", self.speed, 0.0..=1e4, 1.0)
+    }
+
+    /// Checked [`WaterSimulation::push`].
+    pub(crate) fn usable_push(&self, entity: Entity, reported: &mut Reported) -> f32 {
+        reported.clamp(entity, "WaterSimulation::push", self.push, 0.0..=10.0, 1.0)
+    }
 }
 
 impl Default for WaterSimulation {

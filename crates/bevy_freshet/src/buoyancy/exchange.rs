@@ -1,7 +1,7 @@
 //! What floating bodies and simulated water do to each other: bodies take up room, and what resists them is pushed along.
 //!
 //! Before the water is looked up, [`displace`] cuts every hull into columns on the cells of the water that it was in, and puts them in.
-//! The surface that a column ends at is the plane through the corners of the body's footprint: it lies outside the body, so that no
+//! The surface that a column ends at is the plane through the corners of the body's footprint: they lie at its rim or outside, so that no
 //! column feeds on the level that it has raised itself, and waves much shorter than the body leave it as it is. After the forces are
 //! known, [`return_forces`] gives the water the opposite of them; that of the pressure it has already got, but for rounding (see
 //! [`Displaced`](freshet_hydro::shallow_water::Displaced)).
@@ -9,19 +9,21 @@ use super::{body::Body, floating::Floating};
 use crate::{
     body::{ResolvedWater, WaterSimulation},
     interaction::BodyMotion,
-    simulation::{Raster, Simulated},
+    report::Reported,
+    simulation::Simulated,
 };
 use bevy::{
+    ecs::query::QueryData,
     math::{Affine2, Affine3A},
     prelude::*,
 };
 use bevy_rapier3d::{
     plugin::context::{RapierContextEntityLink, RapierRigidBodySet},
     prelude::RapierRigidBodyHandle,
-    rapier::prelude::RigidBody,
 };
 use freshet_hydro::{
-    hull::{ColumnRaster, Columns, Hull, SurfacePlane},
+    grid::Raster,
+    hull::{Columns, Hull, SurfacePlane},
     shallow_water::Displaced,
     waves::WATER_DENSITY,
 };
@@ -36,16 +38,15 @@ const RESOLVED: f32 = 4.0;
 #[derive(Default)]
 pub(super) struct Exchanging {
     /// The simulated water that it is in.
-    pub water: Option<Entity>,
+    water: Option<Entity>,
     columns: Columns,
     /// Cells with the displaced volume per area, m.
     depths: Vec<(UVec2, f32)>,
-    /// Share of its columns that the water has made room for.
-    share: f32,
-    /// Where the body was in which water, and the time of that, s.
-    before: Option<(Entity, f64, Vec3)>,
     /// The same, spread as the water has it.
     own: Vec<Displaced>,
+    /// Share of its columns that the water has made room for.
+    share: f32,
+    before: Option<Whereabouts>,
     /// What the water does to the body; if it sleeps, what it did when it went to sleep.
     pub felt: Option<Exerted>,
 }
@@ -56,6 +57,23 @@ pub(super) struct Exerted {
     pub pressure: Vec3,
     /// All but the pressure.
     pub resistance: Vec3,
+}
+
+/// Where a body is, in which water, and when.
+#[derive(Clone, Copy)]
+struct Whereabouts {
+    water: Entity,
+    /// Time that the water has simulated, s.
+    time: f64,
+    /// World, m.
+    place: Vec3,
+}
+
+impl Whereabouts {
+    /// Whether a body that moves by at most `way` (m) goes on from `before`, in a water that has not begun anew.
+    fn follows(&self, before: &Self, way: f32) -> bool {
+        before.water == self.water && before.time <= self.time && before.place.distance(self.place) <= way
+    }
 }
 
 /// Local (x, height over the still level, z) from world.
@@ -80,57 +98,68 @@ fn local_plane(plane: &SurfacePlane, water: &ResolvedWater) -> SurfacePlane {
 }
 
 impl Exchanging {
-    /// Cuts the body where the solver has it.
-    fn cut(
-        &mut self,
-        hull: &Hull,
-        body: &RigidBody,
-        surface: &SurfacePlane,
-        water: &ResolvedWater,
-        raster: ColumnRaster,
-    ) {
-        let world_from_body = Affine3A::from_rotation_translation(*body.rotation(), body.translation());
-        let from_body = local_from_world(water) * world_from_body;
-        self.columns.rasterise(hull, from_body, &local_plane(surface, water), &raster);
-    }
-
-    /// Makes room within [`APPEARING`] for a body that is suddenly there, and at once for one that comes from outside: `now` is
-    /// the water with its time (s) and the body's place in it, and `way` how far (m) it may have moved.
-    fn appear(&mut self, now: (Entity, f64, Vec3), way: f32, dt: f32, cell: f32) {
-        let is_dry = self.columns.volume() <= 0.0;
-        let goes_on =
-            |before: (Entity, f64, Vec3)| before.0 == now.0 && before.1 <= now.1 && before.2.distance(now.2) <= way;
-        if !self.before.replace(now).is_some_and(goes_on) {
-            self.share = 0.0;
-        }
-        self.share = if is_dry { 1.0 } else { (self.share + dt / APPEARING).min(1.0) };
-        let per_area = self.share / (cell * cell);
+    /// Cuts the hull, whose pose is `body` in the frame of the water, into columns below `surface`.
+    fn cut(&mut self, hull: &Hull, body: Affine3A, surface: &SurfacePlane, raster: &Raster) {
+        self.columns.rasterise(hull, body, surface, raster);
+        let per_area = 1.0 / (raster.cell * raster.cell);
         self.depths.clear();
         self.depths.extend(self.columns.cells().map(|(cell, volume)| (cell, volume * per_area)));
     }
+
+    /// Leaves of the columns what the water has made room for: within [`APPEARING`] all of a body that is suddenly there, and at once
+    /// that of one which comes from outside. The body is `now` there, `dt` (s) later, and may have moved by `way` (m).
+    fn appear(&mut self, now: Whereabouts, way: f32, dt: f32) {
+        if !self.before.replace(now).is_some_and(|before| now.follows(&before, way)) {
+            self.share = 0.0;
+        }
+        self.share = if self.depths.is_empty() { 1.0 } else { (self.share + dt / APPEARING).min(1.0) };
+        self.depths.iter_mut().for_each(|(_, depth)| *depth *= self.share);
+    }
+
+    /// Adds what is left of the columns to those of all bodies; `surface` is local.
+    fn add_to(&mut self, simulated: &mut Simulated, surface: &SurfacePlane) {
+        let mut displacement = std::mem::take(&mut simulated.exchange.displacement);
+        let columns = self.depths.iter().copied();
+        let own = displacement.add(columns, |cell| simulated.room(cell, |place| surface.at(place)));
+        self.own.clear();
+        self.own.extend_from_slice(own);
+        simulated.exchange.displacement = displacement;
+    }
 }
 
-/// Whether the water's clock runs.
-fn runs(settings: &WaterSimulation) -> bool {
-    !settings.paused && settings.speed > 0.0
+/// A water that bodies act on.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(super) struct Waters {
+    entity: Entity,
+    simulated: &'static mut Simulated,
+    resolved: &'static mut ResolvedWater,
+    settings: &'static WaterSimulation,
 }
 
-/// Whether bodies act on the water.
-fn acts(settings: &WaterSimulation) -> bool {
-    runs(settings) && settings.push > 0.0
+impl WatersItem<'_, '_> {
+    /// Whether the water's clock runs: if it stands still, the water keeps the bodies that it has.
+    fn runs(&self, reported: &mut Reported) -> bool {
+        !self.settings.paused && self.settings.usable_speed(self.entity, reported) > 0.0
+    }
+
+    /// Whether bodies act on it.
+    fn is_moved(&self, reported: &mut Reported) -> bool {
+        self.runs(reported) && self.settings.usable_push(self.entity, reported) > 0.0
+    }
 }
 
 /// Puts all bodies into the simulated waters that they are in.
 pub(super) fn displace(
     mut bodies: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Body, &mut BodyMotion), With<Floating>>,
     contexts: Query<&RapierRigidBodySet>,
-    mut waters: Query<(&mut Simulated, &mut ResolvedWater, &WaterSimulation)>,
+    mut waters: Query<Waters>,
+    mut reported: ResMut<Reported>,
     time: Res<Time>,
 ) {
     let mut any = false;
-    // Water that stands still keeps the bodies that it has.
-    for (mut simulated, ..) in waters.iter_mut().filter(|water| runs(water.2)) {
-        any |= simulated.take_bodies_out();
+    for mut water in &mut waters {
+        any |= water.runs(&mut reported) && water.simulated.take_bodies_out();
     }
     for (handle, link, mut state, mut motion) in &mut bodies {
         state.exchanging.water = None;
@@ -139,26 +168,25 @@ pub(super) fn displace(
         let Some(body) = body.filter(|body| any && body.is_enabled()) else { continue };
         let Body { form: Some(form), footprint, exchanging, .. } = &mut *state else { continue };
         let (Some(entity), Some(surface)) = (footprint.water, footprint.plane()) else { continue };
-        let Ok((mut simulated, water, settings)) = waters.get_mut(entity) else { continue };
-        let Some(Raster { origin, cell, size }) = simulated.raster().filter(|_| acts(settings)) else { continue };
-        let raster = ColumnRaster { origin, cell, size };
-        exchanging.cut(&form.hull, body, &surface, &water, raster);
-        let now = (entity, simulated.time(), body.translation());
-        let way = cell + 2.0 * time.delta_secs() * body.linvel().length();
-        exchanging.appear(now, way, time.delta_secs(), cell);
+        let Some(mut water) = waters.get_mut(entity).ok().filter(|water| water.is_moved(&mut reported)) else {
+            continue;
+        };
+        let Some(raster) = water.simulated.raster() else { continue };
+        let (pose, place) =
+            (Affine3A::from_rotation_translation(*body.rotation(), body.translation()), body.translation());
+        let surface = local_plane(&surface, &water.resolved);
+        exchanging.cut(&form.hull, local_from_world(&water.resolved) * pose, &surface, &raster);
+        let (dt, now) = (time.delta_secs(), Whereabouts { water: entity, time: water.simulated.time(), place });
+        exchanging.appear(now, raster.cell + 2.0 * dt * body.linvel().length(), dt);
+        exchanging.add_to(&mut water.simulated, &surface);
         exchanging.water = Some(entity);
         motion.exchanges_with = Some(entity);
         motion.is_resolved = form.hull.length() >= RESOLVED * raster.cell;
-        let level = local_plane(&surface, &water);
-        let mut displacement = std::mem::take(&mut simulated.exchange.displacement);
-        let columns = exchanging.depths.iter().copied();
-        let own = displacement.add(columns, |cell| simulated.room(cell, |place| level.at(place)));
-        exchanging.own.clear();
-        exchanging.own.extend_from_slice(own);
-        simulated.exchange.displacement = displacement;
     }
-    for (mut simulated, mut water, _) in waters.iter_mut().filter(|water| runs(water.2)) {
-        simulated.put_bodies_in(&mut water);
+    for mut water in &mut waters {
+        if water.runs(&mut reported) {
+            water.simulated.put_bodies_in(&mut water.resolved);
+        }
     }
 }
 
@@ -169,27 +197,28 @@ pub(super) fn displace(
 /// the momentum of the pressure is made or lost.
 pub(super) fn return_forces(
     bodies: Query<&Body, (With<Floating>, With<RapierRigidBodyHandle>)>,
-    mut waters: Query<(&mut Simulated, &ResolvedWater, &WaterSimulation)>,
+    mut waters: Query<Waters>,
+    mut reported: ResMut<Reported>,
     time: Res<Time>,
 ) {
     for state in &bodies {
         let exchanging = &state.exchanging;
         let (Some(entity), Some(felt)) = (exchanging.water, exchanging.felt) else { continue };
-        let Ok((mut simulated, water, settings)) = waters.get_mut(entity) else { continue };
-        if !acts(settings) {
+        let Some(mut water) = waters.get_mut(entity).ok().filter(|water| water.is_moved(&mut reported)) else {
             continue;
-        }
-        let factor = if settings.push.is_finite() { settings.push.clamp(0.0, 10.0) } else { 1.0 };
-        let local = |force: Vec3| water.local_from_world.transform_vector2(force.xz());
+        };
+        let speed = water.settings.usable_speed(entity, &mut reported);
+        let factor = water.settings.usable_push(entity, &mut reported);
         // In water that runs faster than its bodies a force acts for longer.
-        let per_density = 1.0 / (WATER_DENSITY * settings.speed);
-        let mut force = -factor * per_density * local(felt.resistance);
-        if water.waves.trains.is_empty() {
-            let pressed = -per_density * local(felt.pressure);
-            let dt = time.delta_secs_f64() * f64::from(settings.speed);
-            force += pressed - simulated.reaction(&exchanging.own, dt);
+        let per_density = 1.0 / (WATER_DENSITY * speed);
+        let from_world = water.resolved.local_from_world;
+        let answer = |force: Vec3| -per_density * from_world.transform_vector2(force.xz());
+        let mut force = factor * answer(felt.resistance);
+        if water.resolved.waves.trains.is_empty() {
+            let dt = time.delta_secs_f64() * f64::from(speed);
+            force += answer(felt.pressure) - water.simulated.reaction(&exchanging.own, dt);
         }
-        simulated.push_back(force, &exchanging.depths);
+        water.simulated.push_back(force, &exchanging.depths);
     }
 }
 

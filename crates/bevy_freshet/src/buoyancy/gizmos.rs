@@ -4,6 +4,7 @@ use super::{
     body::Body,
     floating::{Buoyancy, Floating},
 };
+use crate::report::nearest;
 use bevy::{
     color::palettes::css::{AQUA, DODGER_BLUE, LIME, ORANGE_RED, WHITE, YELLOW},
     gizmos::GizmoPlugin,
@@ -164,7 +165,7 @@ fn usable(field: &str, value: f32, range: RangeInclusive<f32>, fallback: f32) ->
     if range.contains(&value) {
         return value;
     }
-    let used = if value.is_nan() { fallback } else { value.clamp(*range.start(), *range.end()) };
+    let used = nearest(value, &range, fallback);
     warn_once!("BuoyancyGizmos::{field} is {value}, outside {}…{}; {used} is used", range.start(), range.end());
     used
 }
@@ -193,7 +194,7 @@ fn draw(
             continue;
         }
         let Ok((set, config)) = contexts.get(link.0) else { continue };
-        // What the water leaves alone has an old footprint.
+        // The water does not hold what it does not move.
         let Some(body) = set.bodies.get(handle.0).filter(|body| body.is_dynamic() && body.is_enabled()) else {
             continue;
         };

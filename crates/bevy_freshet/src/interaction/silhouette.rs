@@ -7,10 +7,14 @@ use super::{
 use crate::{
     body::{ResolvedWater, WaterSimulation},
     report::Reported,
-    simulation::{Deposits, FieldWindow, Raster, SilhouetteCell, Simulated},
+    simulation::{Deposits, FieldWindow, SilhouetteCell, Simulated},
 };
 use bevy::{math::Affine3A, mesh::skinning::SkinnedMesh, prelude::*};
-use freshet_hydro::{grid::Grid, silhouette::Section, waves::WaveTrain};
+use freshet_hydro::{
+    grid::{Grid, Raster},
+    silhouette::Section,
+    waves::WaveTrain,
+};
 use std::sync::Arc;
 
 /// Most places along an axis at which the waves are looked up for one body.
@@ -154,7 +158,7 @@ impl Pen {
         if let (Some(raster), Some((settings, simulated))) =
             (simulation.filter(|_| !exchanges), &mut disturbed.simulated)
         {
-            let factor = reported.clamp(disturbed.entity, "WaterSimulation::push", settings.push, 0.0..=10.0, 1.0);
+            let factor = settings.usable_push(disturbed.entity, reported);
             // The uniform current is added to the simulated one: bodies that drift with it push nothing.
             let relative = |cell: SilhouetteCell| SilhouetteCell { velocity: cell.velocity - water.drift, ..cell };
             let cells = self.cells(&raster, &cut, motion, water).map(relative);
@@ -186,7 +190,7 @@ impl Pen {
         let cover = self.section.cover(raster.origin, raster.cell, raster.size);
         let cells: Vec<_> = cover.cells().collect();
         cells.into_iter().filter_map(|(cell, cover)| {
-            let place = raster.origin + (cell.as_vec2() + 0.5) * raster.cell;
+            let place = raster.middle(cell.as_ivec2());
             if water.still_depth(place) <= 0.0 || !water.covers(place) {
                 return None;
             }

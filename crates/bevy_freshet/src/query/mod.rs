@@ -99,10 +99,6 @@ fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSam
     }
     let Found { rest, elevation, depth } = find(water, local)?;
     let fade = water.fade(rest);
-    let to_world = |v: Vec3| {
-        let turned = water.world_from_local.transform_vector2(v.xz());
-        vec3(turned.x, v.y, turned.y)
-    };
     let current = water.current(local);
     let flowing = water.simulated_at(rest).unwrap_or_default();
     // The surface of flowing water moves with it: w = ∂η/∂t + u·∇η.
@@ -113,8 +109,8 @@ fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSam
     Some(WaterSample {
         water: entity,
         height: water.level + elevation,
-        normal: to_world(tilted.normalize()),
-        velocity: to_world(velocity),
+        normal: water.direction_to_world(tilted.normalize()),
+        velocity: water.direction_to_world(velocity),
         depth,
         ice: water.ice_thickness(local),
         age: water.simulated.as_ref().map_or(0.0, |simulated| simulated.age),

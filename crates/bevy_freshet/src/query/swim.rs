@@ -83,13 +83,9 @@ impl WaterQuery<'_, '_> {
         let (rest, _) = water.surface(place);
         let fade = water.fade(rest);
         let waves = |below| water.waves.velocity_below(rest, fade, below, surface.depth);
-        let to_world = |v: Vec3| {
-            let turned = water.world_from_local.transform_vector2(v.xz());
-            vec3(turned.x, v.y, turned.y)
-        };
-        let at_surface = to_world(water.waves.velocity(rest, fade));
+        let at_surface = water.direction_to_world(water.waves.velocity(rest, fade));
         // What is no wave rises and falls with the surface, and less so towards the bed.
         let flowing = (surface.velocity - at_surface) * vec3(1.0, (1.0 - below / surface.depth).max(0.0), 1.0);
-        Some(Submersion { surface, depth, velocity: flowing + to_world(waves(below)), above_bed })
+        Some(Submersion { surface, depth, velocity: flowing + water.direction_to_world(waves(below)), above_bed })
     }
 }

@@ -33,7 +33,7 @@ pub(crate) use frame::FieldFrame;
 pub(crate) use progress::FieldProgress;
 pub(crate) use shallow_water::{ShallowFrame, ShallowWaterPlugin, Simulated};
 pub(crate) use tiles::{NARROWEST, REACH};
-pub(crate) use window::{FieldWindow, Raster};
+pub(crate) use window::FieldWindow;
 
 use bevy::{
     asset::embedded_asset,

@@ -6,6 +6,7 @@ use crate::{
     surface::Viewers,
 };
 use bevy::prelude::*;
+use freshet_hydro::grid::Raster;
 
 /// A rectangle of square cells that lies on a water, in whole cells from the water's centre.
 ///
@@ -19,25 +20,6 @@ pub(crate) struct FieldWindow {
     pub size: UVec2,
     /// Size of a cell, m.
     pub cell: f32,
-}
-
-/// Square cells anywhere on a water.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Raster {
-    /// Local xz of the north-west corner, m.
-    pub origin: Vec2,
-    /// Size of a cell, m.
-    pub cell: f32,
-    /// Cells along local x and z.
-    pub size: UVec2,
-}
-
-impl Raster {
-    /// Whether it meets the rectangle between local `min` and `max`.
-    pub fn meets(&self, min: Vec2, max: Vec2) -> bool {
-        let last = self.origin + self.size.as_vec2() * self.cell;
-        min.cmple(last).all() && max.cmpge(self.origin).all()
-    }
 }
 
 /// Fewest cells along an axis of a window.

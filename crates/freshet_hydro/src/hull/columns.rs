@@ -5,18 +5,8 @@
 //! negative if it looks up; projections are cut along the lines of the raster, and d is linear over each piece, so nothing is
 //! approximated. What parts of a union have in common is wound the other way round, and comes out right by itself.
 use super::Hull;
+use crate::grid::Raster;
 use glam::{Affine3A, IVec2, UVec2, Vec2, Vec3};
-
-/// A raster of square cells in the plane of x and z.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ColumnRaster {
-    /// Corner of the first cell (x, z), m.
-    pub origin: Vec2,
-    /// Side of a cell, m, > 0.
-    pub cell: f32,
-    /// Columns and rows.
-    pub size: UVec2,
-}
 
 /// A plane surface: its height at x = z = 0 (m), and its slope along x and z.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -50,7 +40,7 @@ impl Columns {
     /// Cuts what lies under the `surface` of `hull`, whose pose is `from_body` in the frame of `raster`, into columns.
     ///
     /// What lies outside the raster is left out. A pose that is not finite leaves nothing.
-    pub fn rasterise(&mut self, hull: &Hull, from_body: Affine3A, surface: &SurfacePlane, raster: &ColumnRaster) {
+    pub fn rasterise(&mut self, hull: &Hull, from_body: Affine3A, surface: &SurfacePlane, raster: &Raster) {
         self.clear();
         self.points.extend(hull.points.iter().map(|point| {
             let point = from_body.transform_point3(*point);
@@ -227,7 +217,7 @@ mod tests {
     use glam::Quat;
     use proptest::prelude::*;
 
-    const RASTER: ColumnRaster = ColumnRaster { origin: Vec2::new(-4.0, -3.0), cell: 0.25, size: UVec2::new(32, 24) };
+    const RASTER: Raster = Raster { origin: Vec2::new(-4.0, -3.0), cell: 0.25, size: UVec2::new(32, 24) };
 
     fn columns(hull: &Hull, turn: Quat, at: Vec3, surface: SurfacePlane) -> Columns {
         let mut columns = Columns::default();

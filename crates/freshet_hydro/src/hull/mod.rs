@@ -32,7 +32,7 @@ mod waterline;
 mod weld;
 
 pub use added_mass::AddedMass;
-pub use columns::{ColumnRaster, Columns, SurfacePlane};
+pub use columns::{Columns, SurfacePlane};
 pub use flotation::{Flotation, Waterplane};
 pub use load::HullPoint;
 pub use resistance::{HullDrag, VISCOSITY, friction_coefficient};

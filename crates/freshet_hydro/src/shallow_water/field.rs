@@ -1,6 +1,7 @@
 //! The surface of a simulated water as others see it: level, depth and velocity at any place, smooth over the wet cells.
 use super::ShallowWater;
 use glam::{UVec2, Vec2, Vec4, Vec4Swizzles};
+use std::sync::Arc;
 
 /// Depth, m, from which on a cell counts as wet for those who look at the water.
 pub const WET: f32 = 1e-3;
@@ -120,24 +121,32 @@ impl Field {
         Vec2::new(x, z) / (2.0 * self.cell_size)
     }
 
-    /// Raises the level of cells (index, by how many m), as bodies do that come into them. Each cell at most once.
-    pub fn raise(&mut self, cells: &[(usize, f32)]) {
-        let (columns, count) = (self.size.x as usize, self.cells.len());
-        for &(index, by) in cells {
-            self.cells[index].x += by;
-            if self.cells[index].y > WET {
-                self.lowest = self.lowest.min(self.cells[index].x);
-                self.highest = self.highest.max(self.cells[index].x);
+    /// Takes over the levels of these cells of `water`, whose water is as it was: bodies have come into them, or left.
+    ///
+    /// Nothing happens, and `false` is given, if they lie where they did.
+    pub fn follow(this: &mut Arc<Self>, water: &ShallowWater, cells: &[usize]) -> bool {
+        if cells.iter().all(|&index| this.cells[index].x == water.level(index)) {
+            return false;
+        }
+        let field = Arc::make_mut(this);
+        for &index in cells {
+            let level = water.level(index);
+            field.cells[index].x = level;
+            if field.cells[index].y > WET {
+                field.lowest = field.lowest.min(level);
+                field.highest = field.highest.max(level);
             }
         }
-        for &(index, _) in cells {
-            let around =
-                [Some(index), index.checked_sub(1), index.checked_sub(columns), Some(index + 1), Some(index + columns)];
+        let (columns, count) = (field.size.x as usize, field.cells.len());
+        for &index in cells {
+            let (north, west) = (index.checked_sub(columns), index.checked_sub(1));
+            let around = [north, west, Some(index), Some(index + 1), Some(index + columns)];
             for index in around.into_iter().flatten().filter(|index| *index < count) {
-                self.slopes[index] = self.slope_of(index);
-                self.steepest = self.steepest.max(self.slopes[index].length());
+                field.slopes[index] = field.slope_of(index);
+                field.steepest = field.steepest.max(field.slopes[index].length());
             }
         }
+        true
     }
 
     fn find_bounds(&mut self) {

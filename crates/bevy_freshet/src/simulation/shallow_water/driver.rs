@@ -13,7 +13,6 @@ use crate::{
         SimulationState, WaterEdges, WaterSimulation, WaterSources, WaterWalls,
     },
     report::Reported,
-    simulation::Raster,
 };
 use bevy::{
     ecs::query::QueryData,
@@ -21,7 +20,7 @@ use bevy::{
     render::renderer::{RenderAdapterInfo, RenderDevice},
 };
 use freshet_hydro::{
-    grid::Grid,
+    grid::{Grid, Raster},
     shallow_water::{Advance, Field, PointSource, Push, ShallowWater, ShallowWaterError},
 };
 use std::{sync::Arc, time::Duration};
@@ -137,7 +136,7 @@ pub(super) fn simulate_on_cpu(
         else {
             continue;
         };
-        let duration = time.delta_secs_f64() * f64::from(speed(entity, settings, &mut reported));
+        let duration = time.delta_secs_f64() * f64::from(settings.usable_speed(entity, &mut reported));
         if duration > 0.0 && !settings.paused {
             let advance = simulation.advance(duration, most_steps(entity, settings, &mut reported));
             if advance.left > 0.0 {
@@ -172,7 +171,7 @@ pub(super) fn simulate_on_gpu(
         let pictures = pictures_of(pictures, simulation.made_of.domain.size, &mut images);
         let work = if simulation.on_gpu.is_some() {
             simulation.take_returned();
-            let speed = speed(entity, settings, &mut reported);
+            let speed = settings.usable_speed(entity, &mut reported);
             let steps = most_steps(entity, settings, &mut reported);
             let work = if !settings.paused {
                 simulation.ask(time.delta().mul_f32(speed), steps, speed)
@@ -201,10 +200,6 @@ fn pictures_of(known: &mut Option<[Handle<Image>; 2]>, size: UVec2, images: &mut
         return pair.clone();
     }
     known.insert(pictures(size).map(|image| images.add(image))).clone()
-}
-
-fn speed(entity: Entity, settings: &WaterSimulation, reported: &mut Reported) -> f32 {
-    reported.clamp(entity, "WaterSimulation::speed", settings.speed, 0.0..=1e4, 1.0)
 }
 
 fn most_steps(entity: Entity, settings: &WaterSimulation, reported: &mut Reported) -> u32 {

@@ -1,16 +1,15 @@
 //! What floating bodies take from a simulated water and give back to it.
 use super::driver::Simulated;
-use crate::{body::ResolvedWater, simulation::Raster};
+use crate::body::ResolvedWater;
 use bevy::prelude::*;
-use freshet_hydro::shallow_water::{Displaced, Displacement, Push};
-use std::{collections::BTreeMap, sync::Arc};
+use freshet_hydro::shallow_water::{Displaced, Displacement, Field, Push};
 
 /// The room that floating bodies take up in a simulated water, as of the last fixed step.
 #[derive(Default)]
 pub(crate) struct Exchange {
     pub displacement: Displacement,
-    /// What they displaced before, m, by index of the cell.
-    before: BTreeMap<usize, f32>,
+    /// Cells that they were in before, by index.
+    before: Vec<usize>,
 }
 
 impl Simulated {
@@ -26,39 +25,31 @@ impl Simulated {
         displacement.clear();
         self.forces.clear();
         before.clear();
-        before.extend(simulation.water.raised().map(|(index, [ground, bed])| (index, bed - ground)));
+        before.extend(simulation.water.raised().map(|(index, _)| index));
         _ = simulation.water.set_displaced(&[]);
         true
     }
 
     /// How far the ground in a cell lies below the `level` at its middle (local xz, m), if there is such a cell and it does.
     pub fn room(&self, cell: IVec2, level: impl Fn(Vec2) -> f32) -> Option<f32> {
-        let (Raster { origin, cell: side, size }, simulation) = (self.raster()?, self.simulation.as_deref()?);
-        let is_inside = cell.cmpge(IVec2::ZERO).all() && cell.cmplt(size.as_ivec2()).all();
-        let ground = |cell: UVec2| simulation.water.bed()[(cell.y * size.x + cell.x) as usize];
-        let room = is_inside.then(|| level(origin + (cell.as_vec2() + 0.5) * side) - ground(cell.as_uvec2()))?;
+        let (raster, simulation) = (self.raster()?, self.simulation.as_deref()?);
+        let room = level(raster.middle(cell)) - simulation.water.bed()[raster.index(cell)?];
         (room > 0.0).then_some(room)
     }
 
     /// Puts all bodies in: levels rise where they have come, and fall where they have gone, before the water answers.
     pub fn put_bodies_in(&mut self, resolved: &mut ResolvedWater) {
         let Some(simulation) = self.simulation.as_deref_mut() else { return };
-        let Exchange { displacement, before, .. } = &mut self.exchange;
+        let Exchange { displacement, before: cells } = &mut self.exchange;
         if simulation.water.set_displaced(displacement.cells()).is_err() {
             // Cells of a simulation that has since got another size.
             displacement.clear();
         }
-        let mut changes = std::mem::take(before);
-        changes.values_mut().for_each(|by| *by = -*by);
-        for (index, [ground, bed]) in simulation.water.raised() {
-            *changes.entry(index).or_default() += bed - ground;
-        }
-        let changes: Vec<_> = changes.into_iter().filter(|(_, by)| *by != 0.0).collect();
-        if !changes.is_empty() {
-            Arc::make_mut(&mut simulation.field).raise(&changes);
-            if let Some(simulated) = &mut resolved.simulated {
-                simulated.field = simulation.field.clone();
-            }
+        cells.extend(simulation.water.raised().map(|(index, _)| index));
+        if Field::follow(&mut simulation.field, &simulation.water, cells)
+            && let Some(simulated) = &mut resolved.simulated
+        {
+            simulated.field = simulation.field.clone();
         }
     }
 
@@ -72,16 +63,12 @@ impl Simulated {
     /// water is there.
     pub fn push_back(&mut self, force: Vec2, columns: &[(UVec2, f32)]) {
         let Some(simulation) = self.simulation.as_deref() else { return };
-        let (size, cell) = (simulation.water.size(), simulation.water.cell_size());
+        let Some(raster) = self.raster() else { return };
         let depths = simulation.water.depths();
-        let weighted = || {
-            columns.iter().filter(|(at, _)| at.cmplt(size).all()).map(|&(at, depth)| {
-                let index = at.y as usize * size.x as usize + at.x as usize;
-                (at, depth * depths[index])
-            })
-        };
+        let weigh = |&(at, depth): &(UVec2, f32)| Some((at, depth * depths[raster.index(at.as_ivec2())?]));
+        let weighted = || columns.iter().filter_map(weigh);
         let sum: f32 = weighted().map(|(_, weight)| weight).sum();
-        let per_weight = force / (sum * cell * cell);
+        let per_weight = force / (sum * raster.cell * raster.cell);
         let push = |(cell, weight)| Push { cell, force: per_weight * weight, ..default() };
         // What is beyond all bounds would be refused with everything else.
         self.forces.extend(weighted().map(push).filter(|push| push.force.abs().max_element() < 1e6));
