@@ -23,14 +23,14 @@ const STEPS: [Step; 7] = [
         "lints without features",
         &["clippy", "--package", "bevy_freshet", "--lib", "--no-default-features", "--", "-D", "warnings"],
     ),
-    Step::new(
-        "lints of tests without features",
-        &["clippy", "--package", "bevy_freshet", "--tests", "--no-default-features", "--", "-D", "warnings"],
-    ),
     Step {
         rustdocflags: Some("-D warnings"),
         ..Step::new("documentation", &["doc", "--workspace", "--all-features", "--no-deps"])
     },
+    Step::new(
+        "lints of tests without features",
+        &["clippy", "--package", "bevy_freshet", "--tests", "--no-default-features", "--", "-D", "warnings"],
+    ),
     Step::new("tests", &["test", "--workspace", "--all-features"]),
     Step::new("tests without features", &["test", "--package", "bevy_freshet", "--no-default-features"]),
 ];

@@ -1,10 +1,7 @@
 //! How bodies push simulated water.
 use crate::simulation::SilhouetteCell;
 use bevy::prelude::*;
-use freshet_hydro::shallow_water::Push;
-
-/// Share of its push that a cell keeps along an axis; its two neighbours have the rest, so that none is pushed alone.
-const KEPT: f32 = 0.5;
+use freshet_hydro::shallow_water::{Push, spread};
 
 /// Adds what a body does to the water of a simulation of `size` cells: the drag of its silhouette's `cells`, whose `area` is that of
 /// the whole section (m²), with this drag `coefficient`.
@@ -19,12 +16,10 @@ pub(super) fn push(
     let per_draft = 0.5 * coefficient / area.sqrt();
     for silhouette in cells {
         let strength = per_draft * silhouette.draft;
-        for neighbour in 0..9 {
-            let offset = ivec2(neighbour % 3, neighbour / 3) - 1;
+        for (offset, share) in spread() {
             let cell = silhouette.cell.as_ivec2() + offset;
             if cell.cmpge(IVec2::ZERO).all() && cell.cmplt(size.as_ivec2()).all() {
-                let share = |offset: i32| if offset == 0 { KEPT } else { 0.5 * (1.0 - KEPT) };
-                let strength = strength * share(offset.x) * share(offset.y);
+                let strength = share * strength;
                 pushes.push(Push { cell: cell.as_uvec2(), strength, velocity: silhouette.velocity, force: Vec2::ZERO });
             }
         }

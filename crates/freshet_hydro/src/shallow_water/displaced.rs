@@ -18,9 +18,18 @@ pub struct Displaced {
     pub depth: f32,
 }
 
-/// Share of its column that a cell keeps along an axis; its two neighbours have the rest. Upright sides of a body that goes from cell
-/// to cell would shake the water otherwise: a ferry that drifts is followed by a third of the ripples, and has half the resistance.
+/// Share of what a body does to it that a cell keeps along an axis; its two neighbours have the rest.
 const KEPT: f32 = 0.5;
+
+/// Offsets of the nine cells over which is spread what a body does to one, with their shares; the cell itself comes last.
+///
+/// Upright sides of a body that goes from cell to cell would shake the water otherwise: a ferry that drifts is followed by a third of
+/// the ripples, and has half the resistance.
+pub fn spread() -> impl Iterator<Item = (IVec2, f32)> {
+    let along = |offset: i32| if offset == 0 { KEPT } else { 0.5 * (1.0 - KEPT) };
+    let around = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1), (0, 0)];
+    around.into_iter().map(move |(x, z)| (IVec2::new(x, z), along(x) * along(z)))
+}
 
 /// What bodies displace, put together cell by cell.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,13 +56,11 @@ impl Displacement {
             let Some(most) = room(cell.as_ivec2()) else { continue };
             let depth = depth.min(most);
             let mut own = depth;
-            for offset in (0..9).map(|k| IVec2::new(k % 3, k / 3) - 1).filter(|offset| *offset != IVec2::ZERO) {
-                let along = |offset: i32| if offset == 0 { KEPT } else { 0.5 * (1.0 - KEPT) };
-                let share = depth * along(offset.x) * along(offset.y);
+            for (offset, share) in spread().filter(|(offset, _)| *offset != IVec2::ZERO) {
                 let beside = cell.as_ivec2() + offset;
                 if room(beside).is_some_and(|most| most >= depth) {
-                    own -= share;
-                    self.cells.push(Displaced { cell: beside.as_uvec2(), depth: share });
+                    own -= share * depth;
+                    self.cells.push(Displaced { cell: beside.as_uvec2(), depth: share * depth });
                 }
             }
             self.cells.push(Displaced { cell, depth: own });

@@ -18,7 +18,7 @@ mod strip;
 
 pub use advance::Advance;
 pub use balance::Balance;
-pub use displaced::{Displaced, Displacement};
+pub use displaced::{Displaced, Displacement, spread};
 pub use edge::DomainSide;
 pub use edges::{Edge, EdgePart};
 pub use exchange::{Forcing, Restored};
