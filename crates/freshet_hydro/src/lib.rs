@@ -9,6 +9,7 @@ pub mod flow;
 pub mod grid;
 pub mod hull;
 pub mod ice;
+mod lanes;
 pub mod load;
 pub mod noise;
 pub mod optics;

@@ -9,8 +9,12 @@
 //! (Gerstner 1802; M06 eq. for the ocean), with `ω² = (g k + (σ/ρ) k³) tanh(k d)` (Airy 1845). The factor `f` is
 //! [`shallow_fade`], the same for all trains of one place. The surface shader's `waves.wgsl` holds the same equations.
 mod heights;
+mod particles;
+mod search;
+mod sums;
 
 pub use heights::HeightSearch;
+pub use particles::{INVERSION_TOLERANCE, Particle};
 
 use core::f32::consts::TAU;
 use glam::{Vec2, Vec3};
@@ -63,6 +67,8 @@ pub struct Wave {
 pub struct WaveTrain {
     /// Wave vector in xz, rad/m.
     pub wave_vector: Vec2,
+    /// Its direction, of length 1.
+    pub direction: Vec2,
     /// Amplitude, m.
     pub amplitude: f32,
     /// Angular frequency, rad/s.
@@ -78,8 +84,10 @@ impl WaveTrain {
         let wavenumber = TAU / wave.wavelength;
         let angular_frequency = angular_frequency(wavenumber, depth);
         let phase = (f64::from(wave.phase) - f64::from(angular_frequency) * time) % core::f64::consts::TAU;
+        let direction = wave.direction.normalize_or(Vec2::X);
         Self {
-            wave_vector: wave.direction.normalize_or(Vec2::X) * wavenumber,
+            wave_vector: direction * wavenumber,
+            direction,
             amplitude: wave.steepness / wavenumber,
             angular_frequency,
             phase: phase as f32,
@@ -104,50 +112,6 @@ impl WaveField {
         Self { trains: waves.iter().map(|wave| WaveTrain::at(wave, depth, time)).collect() }
     }
 
-    /// Where the particle that rests at `rest` (xz, m) is displaced to, m; `fade` is its [`shallow_fade`].
-    pub fn displacement(&self, rest: Vec2, fade: f32) -> Vec3 {
-        let mut sum = Vec3::ZERO;
-        for train in &self.trains {
-            let (sin, cos) = train.sin_cos(rest);
-            let horizontal = train.wave_vector.normalize_or_zero() * (-train.amplitude * sin);
-            sum += Vec3::new(horizontal.x, train.amplitude * cos, horizontal.y);
-        }
-        sum * fade
-    }
-
-    /// Upward unit normal of the surface at the particle that rests at `rest`, for a locally constant `fade`.
-    ///
-    /// With `s = Σ f kᵢ Aᵢ sin θᵢ` and `J = ∂x/∂x₀ = 1 − Σ f k̂k̂ᵀ k A cos θ` the slope is `−J⁻¹ s`.
-    pub fn normal(&self, rest: Vec2, fade: f32) -> Vec3 {
-        let mut slope = Vec2::ZERO;
-        // The symmetric Jacobian of the horizontal map: (xx, xz, zz).
-        let (mut xx, mut xz, mut zz) = (1.0, 0.0, 1.0);
-        for train in &self.trains {
-            let (sin, cos) = train.sin_cos(rest);
-            let k = train.wave_vector;
-            slope -= k * (train.amplitude * sin);
-            let stretch = fade * train.amplitude * cos / k.length().max(f32::MIN_POSITIVE);
-            xx -= k.x * k.x * stretch;
-            xz -= k.x * k.y * stretch;
-            zz -= k.y * k.y * stretch;
-        }
-        slope *= fade;
-        // (∂x × ∂z) of the parametric surface, turned upward: no division, so a cusp is harmless.
-        Vec3::new(slope.y * xz - slope.x * zz, xx * zz - xz * xz, slope.x * xz - slope.y * xx).normalize_or(Vec3::Y)
-    }
-
-    /// Velocity, m/s, of the particle that rests at `rest`.
-    pub fn velocity(&self, rest: Vec2, fade: f32) -> Vec3 {
-        let mut sum = Vec3::ZERO;
-        for train in &self.trains {
-            let (sin, cos) = train.sin_cos(rest);
-            let speed = train.amplitude * train.angular_frequency;
-            let horizontal = train.wave_vector.normalize_or_zero() * (speed * cos);
-            sum += Vec3::new(horizontal.x, speed * sin, horizontal.y);
-        }
-        sum * fade
-    }
-
     /// Velocity, m/s, of the water `below` (m, 0…`depth`) the particle that rests at `rest`, in a column of `depth` (m, > 0, may be
     /// infinite).
     ///
@@ -163,29 +127,15 @@ impl WaveField {
             let (here, all) = (-2.0 * wavenumber * (depth - below).max(0.0), -2.0 * wavenumber * depth);
             let level = decay * (1.0 + libm::expf(here)) / (1.0 + libm::expf(all));
             let upright = if all < 0.0 { decay * libm::expm1f(here) / libm::expm1f(all) } else { 0.0 };
-            let horizontal = train.wave_vector.normalize_or_zero() * (speed * cos * level);
+            let horizontal = train.direction * (speed * cos * level);
             sum += Vec3::new(horizontal.x, speed * sin * upright, horizontal.y);
         }
         sum * fade
     }
 
-    /// The particle at rest that is now above `place` (xz, m): solves `x₀ + D(x₀) = place` by fixed-point iteration
-    /// to [`INVERSION_TOLERANCE`].
-    ///
-    /// The iteration contracts by the sum of the steepnesses, which is below 1 for a surface without loops; the last
-    /// iterate is returned where it does not converge.
-    pub fn rest_below(&self, place: Vec2, mut fade: impl FnMut(Vec2) -> f32) -> Vec2 {
-        let mut rest = place;
-        for _ in 0..MAX_INVERSION_STEPS {
-            let moved = self.displacement(rest, fade(rest));
-            let next = place - Vec2::new(moved.x, moved.z);
-            let error = next.distance_squared(rest);
-            rest = next;
-            if error < INVERSION_TOLERANCE * INVERSION_TOLERANCE {
-                break;
-            }
-        }
-        rest
+    /// Bound of how far a search is from its goal at the end, m, if displacements differ by at most `contraction` per distance.
+    fn unfinished(&self, contraction: f32) -> f32 {
+        libm::powf(contraction, search::LEAST_CONTRACTIONS as f32) * self.total_amplitude()
     }
 
     /// Sum of `k A` of all trains: from 1 on the surface can fold over itself.
@@ -199,14 +149,11 @@ impl WaveField {
     }
 }
 
-/// Horizontal accuracy of [`WaveField::rest_below`], m. With slopes below 1 the height is as good.
-pub const INVERSION_TOLERANCE: f32 = 1e-4;
-const MAX_INVERSION_STEPS: u32 = 48;
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+    use glam::Vec3Swizzles;
 
     fn sea() -> Vec<Wave> {
         [(4.0, 0.25, 0.3), (2.3, 0.2, 1.2), (1.1, 0.15, 2.9), (0.6, 0.1, -0.8)]
@@ -242,7 +189,7 @@ mod tests {
             let field = WaveField::at(&[wave], 2.0, time);
             // A crest stands over the resting particle c·t, modulo the wavelength.
             let crest = ((f64::from(speed) * time) % 3.0) as f32;
-            let moved = field.displacement(Vec2::new(crest, 5.0), 1.0);
+            let moved = field.particle(Vec2::new(crest, 5.0), 1.0).displacement;
             assert_relative_eq!(moved.y, 0.2 * 3.0 / TAU, max_relative = 1e-3);
         }
     }
@@ -252,16 +199,37 @@ mod tests {
         let field = WaveField::at(&sea(), 3.0, 17.2);
         for i in 0..1000 {
             let place = Vec2::new((i % 40) as f32 * 0.31, (i / 40) as f32 * 0.27);
-            let rest = field.rest_below(place, |_| 1.0);
-            let moved = field.displacement(rest, 1.0);
-            assert!((rest + Vec2::new(moved.x, moved.z)).distance(place) < 1e-3);
+            let found = field.particle_above(place, |_| 1.0);
+            assert!((found.rest + found.displacement.xz()).distance(place) < 1.1 * INVERSION_TOLERANCE);
+        }
+    }
+
+    /// Sums of cosines that nearly fold, some of them in one direction, and far from the origin.
+    #[test]
+    fn steep_waves_are_searched_to_the_end() {
+        for (count, steepness, far) in [(1, 0.95, 0.0), (3, 0.95, 0.0), (12, 0.9, 0.0), (12, 0.9, 3000.0)] {
+            let waves: Vec<_> = (0..count)
+                .map(|i| Wave {
+                    direction: Vec2::from_angle(0.2 * i as f32),
+                    wavelength: 7.0 * 0.8_f32.powi(i),
+                    steepness: steepness / count as f32,
+                    phase: i as f32,
+                })
+                .collect();
+            let field = WaveField::at(&waves, 5.0, 3.0);
+            for i in 0..2000 {
+                let place = Vec2::new(far + i as f32 * 0.013, far - i as f32 * 0.007);
+                let found = field.particle_above(place, |_| 1.0);
+                let beside = (found.rest + found.displacement.xz()).distance(place);
+                assert!(beside <= INVERSION_TOLERANCE.max(1e-6 * far), "{beside} m beside {place}");
+            }
         }
     }
 
     #[test]
     fn normal_is_the_gradient_of_the_height() {
         let field = WaveField::at(&sea(), 3.0, 4.0);
-        let height = |place| field.displacement(field.rest_below(place, |_| 1.0), 1.0).y;
+        let height = |place| field.particle_above(place, |_| 1.0).displacement.y;
         let h = 0.01;
         for i in 0..50 {
             let place = Vec2::new(i as f32 * 0.37, i as f32 * 0.11);
@@ -269,7 +237,7 @@ mod tests {
                 (height(place + Vec2::X * h) - height(place - Vec2::X * h)) / (2.0 * h),
                 (height(place + Vec2::Y * h) - height(place - Vec2::Y * h)) / (2.0 * h),
             );
-            let normal = field.normal(field.rest_below(place, |_| 1.0), 1.0);
+            let normal = field.particle_above(place, |_| 1.0).normal;
             assert_relative_eq!(-normal.x / normal.y, slope.x, epsilon = 0.02);
             assert_relative_eq!(-normal.z / normal.y, slope.y, epsilon = 0.02);
         }
@@ -278,9 +246,9 @@ mod tests {
     #[test]
     fn velocity_is_the_rate_of_the_displacement() {
         let (dt, rest) = (1e-3, Vec2::new(0.4, 2.0));
-        let before = WaveField::at(&sea(), 3.0, 9.0 - dt).displacement(rest, 1.0);
-        let after = WaveField::at(&sea(), 3.0, 9.0 + dt).displacement(rest, 1.0);
-        let velocity = WaveField::at(&sea(), 3.0, 9.0).velocity(rest, 1.0);
+        let before = WaveField::at(&sea(), 3.0, 9.0 - dt).particle(rest, 1.0).displacement;
+        let after = WaveField::at(&sea(), 3.0, 9.0 + dt).particle(rest, 1.0).displacement;
+        let velocity = WaveField::at(&sea(), 3.0, 9.0).particle(rest, 1.0).velocity;
         assert!(((after - before) / (2.0 * dt as f32)).distance(velocity) < 2e-3);
     }
 
@@ -290,7 +258,7 @@ mod tests {
         let wave = Wave { direction: Vec2::X, wavelength: 4.0, steepness: 0.1, phase: 0.4 };
         let (field, k) = (WaveField::at(&[wave], 1.5, 2.0), TAU / 4.0);
         let rest = Vec2::new(0.7, 0.0);
-        let surface = field.velocity(rest, 0.8);
+        let surface = field.particle(rest, 0.8).velocity;
         assert!(field.velocity_below(rest, 0.8, 0.0, 1.5).abs_diff_eq(surface, 1e-6));
         let deep = field.velocity_below(rest, 0.8, 0.9, f32::INFINITY);
         assert!(deep.abs_diff_eq(surface * (-k * 0.9).exp(), 1e-6), "{deep}");

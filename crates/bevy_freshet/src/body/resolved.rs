@@ -9,7 +9,7 @@ use freshet_hydro::{
     grid::Grid,
     ice,
     shallow_water::FieldSample,
-    waves::{self, WaveField},
+    waves::{self, Particle, WaveField},
 };
 use std::sync::Arc;
 
@@ -141,11 +141,20 @@ impl ResolvedWater {
         self.ice.as_ref().map_or(0.0, |ice| ice.level_drop * ice.thickness(place))
     }
 
-    /// The particle at rest that is above local `place`, and the height of the surface there over the still water's, m, as if
-    /// there were water everywhere: waves on what is simulated, lowered by ice.
-    pub fn surface(&self, place: Vec2) -> (Vec2, f32) {
-        let rest = self.waves.rest_below(place, |rest| self.fade(rest));
-        (rest, self.waves.displacement(rest, self.fade(rest)).y - self.drop(rest) + self.risen(rest))
+    /// The particles of the waves above up to [`WaveField::AT_ONCE`] local `places`, as if there were water everywhere. More places cost
+    /// hardly more than one.
+    pub fn particles(&self, places: &[Vec2]) -> [Particle; WaveField::AT_ONCE] {
+        self.waves.particles_above(places, |rest| self.fade(rest))
+    }
+
+    /// Height of the surface over the still water's where `particle` is, m: waves on what is simulated, lowered by ice.
+    pub fn elevation(&self, particle: &Particle) -> f32 {
+        particle.displacement.y - self.drop(particle.rest) + self.risen(particle.rest)
+    }
+
+    /// Height of the surface at local `place` over the still water's, m, as if there were water everywhere.
+    pub fn surface(&self, place: Vec2) -> f32 {
+        self.elevation(&self.particles(&[place])[0])
     }
 
     /// Bounds of the height of the surface over the still water's, m: the lowest it can be, and the highest.

@@ -5,7 +5,7 @@ use super::{
     floating::{BuoyancyModel, Floating},
     solid::bounds,
 };
-use crate::query::{WaterQuery, WaterSample};
+use crate::query::{AT_ONCE, WaterQuery, WaterSample};
 use bevy::prelude::*;
 use bevy_rapier3d::{
     plugin::context::{RapierContextEntityLink, RapierRigidBodySet},
@@ -37,40 +37,45 @@ pub(super) struct Footprint {
 }
 
 impl Footprint {
-    /// Looks up the water at `places`² (at least 2²) points from corner to corner of `area`, whose middle has been looked up; at its
-    /// corners only where that is enough: where two places within differ from what the corners say by less than [`FLAT`].
-    fn look_up(
-        &mut self,
-        area: Rect,
-        places: usize,
-        middle: Option<Surface>,
-        mut water: impl FnMut(Vec2) -> Option<Surface>,
-    ) {
-        self.min = area.min;
-        self.size = area.size();
-        self.look_up_lattice(2, &mut water);
-        let is_near = |within: Vec2, found: Option<Surface>| {
-            let (Some(expected), Some(found)) = (self.at(self.min + self.size * within), found) else { return false };
+    /// Looks up the water at `places`² (at least 2²) points from corner to corner of `area`; at its corners only where that is enough: where
+    /// two places within differ from what the corners say by less than [`FLAT`]. `water` answers for up to [`AT_ONCE`] places.
+    fn look_up(&mut self, area: Rect, places: usize, mut water: impl FnMut(&[Vec2], &mut [Option<Surface>])) {
+        (self.min, self.size) = (area.min, area.size());
+        // The second lies off all symmetries of the corners and the middle, so that a short wave that fits these shows there.
+        const WITHIN: [Vec2; 2] = [Vec2::splat(0.5), vec2(0.31, 0.66)];
+        let [a, b, c, d] = [0, 1, 2, 3].map(|corner| self.place(corner, 2));
+        let within = WITHIN.map(|share| self.min + self.size * share);
+        let mut found = [None; 6];
+        water(&[a, b, c, d, within[0], within[1]], &mut found);
+        self.places = 2;
+        self.samples.clear();
+        self.samples.extend_from_slice(&found[..4]);
+        let is_near = |place: Vec2, found: Option<Surface>| {
+            let (Some(expected), Some(found)) = (self.at(place), found) else { return false };
             (expected.height - found.height).abs() <= FLAT * self.size.max_element()
                 && expected.velocity.distance(found.velocity) <= EVEN
         };
-        // The second lies off all symmetries of the corners and the middle, so that a short wave that fits these shows there.
-        const OFF_MIDDLE: Vec2 = vec2(0.31, 0.66);
-        if places > 2
-            && !(is_near(Vec2::splat(0.5), middle) && is_near(OFF_MIDDLE, water(self.min + self.size * OFF_MIDDLE)))
-        {
+        if places > 2 && !within.iter().zip(&found[4..]).all(|(place, found)| is_near(*place, *found)) {
             self.look_up_lattice(places, &mut water);
         }
     }
 
-    fn look_up_lattice(&mut self, places: usize, water: &mut impl FnMut(Vec2) -> Option<Surface>) {
-        self.places = places;
+    /// Place of a sample, m, of a lattice of this many places along each side.
+    fn place(&self, index: usize, places: usize) -> Vec2 {
         let step = self.size / (places - 1) as f32;
+        self.min + step * vec2((index % places) as f32, (index / places) as f32)
+    }
+
+    fn look_up_lattice(&mut self, places: usize, water: &mut impl FnMut(&[Vec2], &mut [Option<Surface>])) {
+        self.places = places;
         self.samples.clear();
-        for row in 0..places {
-            for column in 0..places {
-                self.samples.push(water(self.min + step * Vec2::new(column as f32, row as f32)));
-            }
+        self.samples.resize(places * places, None);
+        let mut first = 0;
+        while first < self.samples.len() {
+            let count = AT_ONCE.min(self.samples.len() - first);
+            let at: [Vec2; AT_ONCE] = std::array::from_fn(|index| self.place(first + index, places));
+            water(&at[..count], &mut self.samples[first..first + count]);
+            first += count;
         }
     }
 
@@ -140,7 +145,7 @@ impl Footprint {
 }
 
 /// The surface as the hull wants it, if the sample is sound.
-fn surface(sample: &WaterSample) -> Option<Surface> {
+fn surface_of(sample: &WaterSample) -> Option<Surface> {
     let slope = -sample.normal.xz() / sample.normal.y;
     let sound = sample.height.is_finite() && slope.is_finite() && sample.velocity.is_finite();
     sound.then_some(Surface { height: sample.height, slope, velocity: sample.velocity })
@@ -165,27 +170,35 @@ pub(super) fn sample_water(
             BuoyancyModel::Voxels { per_axis } => per_axis.clamp(2, 16) as usize,
             _ => PLACES,
         };
-        // Where waters lie above one another the keel under the middle tells which one the body is in: all of it, as far as that reaches.
+        // Where waters lie above one another the keel under the middle tells which one the body is in: all of it, as far as that reaches, and
+        // beyond only what else reaches up to the keel. What lies far below the brim of a pond is not in it.
         let keel = |at: Vec2| vec3(at.x, aabb.mins.y, at.y);
-        let middle = water.sample(keel(area.center()));
-        let mut own = middle.as_ref().map(|sample| sample.water);
-        let moving = |sample: &WaterSample| {
-            let found = surface(sample)?;
-            Some(Surface { velocity: if floating.current { found.velocity } else { Vec3::ZERO }, ..found })
-        };
+        let mut own = water.water_at(keel(area.center()));
         state.footprint.lowest = aabb.mins.y;
-        state.footprint.look_up(area, places, middle.as_ref().and_then(moving), |at| {
-            let found = own.and_then(|own| water.sample_of(own, at)).or_else(|| water.sample(keel(at)))?;
-            own = own.or(Some(found.water));
-            moving(&found)
+        state.footprint.look_up(area, places, |places, surfaces| {
+            let found = own.map_or_else(Default::default, |own| water.samples_of(own, places));
+            for ((place, surface), found) in places.iter().zip(surfaces).zip(found) {
+                let reaches = |other: &WaterSample| own.is_none() || other.height > aabb.mins.y;
+                let found = found.or_else(|| water.sample(keel(*place)).filter(reaches));
+                own = own.or(found.as_ref().map(|found| found.water));
+                *surface = found.as_ref().and_then(surface_of).map(|found| Surface {
+                    velocity: if floating.current { found.velocity } else { Vec3::ZERO },
+                    ..found
+                });
+            }
         });
-        state.footprint.water = own;
+        state.footprint.water = own.filter(|_| !state.footprint.is_dry());
     });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Looks up one place after the other.
+    fn each(water: impl Fn(Vec2) -> Option<Surface>) -> impl FnMut(&[Vec2], &mut [Option<Surface>]) {
+        move |places, found| found.iter_mut().zip(places).for_each(|(found, place)| *found = water(*place))
+    }
 
     fn plane(at: Vec2) -> Option<Surface> {
         Some(Surface { height: 1.0 + 0.5 * at.x - 0.25 * at.y, slope: Vec2::new(0.5, -0.25), velocity: Vec3::X })
@@ -194,7 +207,7 @@ mod tests {
     #[test]
     fn a_plane_is_interpolated_exactly() {
         let mut footprint = Footprint::default();
-        footprint.look_up(Rect::new(-1.0, 2.0, 3.0, 4.0), 4, plane(Vec2::new(1.0, 3.0)), plane);
+        footprint.look_up(Rect::new(-1.0, 2.0, 3.0, 4.0), 4, each(plane));
         for at in [Vec2::new(-1.0, 2.0), Vec2::new(3.0, 4.0), Vec2::new(0.3, 3.7)] {
             let (found, exact) = (footprint.at(at).unwrap(), plane(at).unwrap());
             assert!((found.height - exact.height).abs() < 1e-5);
@@ -206,12 +219,12 @@ mod tests {
     #[test]
     fn a_shore_ends_the_water() {
         let mut footprint = Footprint::default();
-        footprint.look_up(Rect::new(-1.0, -1.0, 1.0, 1.0), 5, plane(Vec2::ZERO), |at| plane(at).filter(|_| at.x < 0.1));
+        footprint.look_up(Rect::new(-1.0, -1.0, 1.0, 1.0), 5, each(|at| plane(at).filter(|_| at.x < 0.1)));
         assert!(footprint.at(Vec2::new(0.9, 0.0)).is_none());
         let found = footprint.at(Vec2::new(-0.6, 0.2)).unwrap();
         assert!((found.height - 0.65).abs() < 1e-5);
         assert!(!footprint.is_dry());
-        footprint.look_up(Rect::new(0.0, 0.0, 0.0, 0.0), 1, None, |_| None);
+        footprint.look_up(Rect::new(0.0, 0.0, 0.0, 0.0), 1, each(|_| None));
         assert!(footprint.is_dry() && footprint.at(Vec2::ZERO).is_none());
     }
 }

@@ -257,7 +257,7 @@ impl Lattice {
         let step = widest.max(least).min(size.max_element());
         let places = (size / step).ceil() + 1.0;
         let place = |cell: UVec2| center + (cell.as_vec2() + 0.5 - places / 2.0) * step;
-        let heights = Grid::from_fn(places.as_uvec2(), step, |cell| water.surface(place(cell)).1);
+        let heights = Grid::from_fn(places.as_uvec2(), step, |cell| water.surface(place(cell)));
         Self { center, heights: heights.ok() }
     }
 

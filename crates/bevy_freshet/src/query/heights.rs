@@ -1,11 +1,12 @@
 //! Heights of the water at many places at once.
-use super::{WaterQuery, find};
+use super::{AT_ONCE, WaterQuery, find};
 use crate::body::ResolvedWater;
 use bevy::{
     prelude::*,
     tasks::{ComputeTaskPool, ParallelSliceMut},
 };
 use freshet_hydro::waves::{self, HeightSearch};
+use std::slice;
 
 /// Places that a thread takes at a time, so that their sum is worth the way to it.
 const CHUNK: usize = 256;
@@ -43,22 +44,33 @@ impl WaterQuery<'_, '_> {
     /// ```
     pub fn heights(&self, places: &[Vec3], error: f32, heights: &mut Vec<Option<f32>>) {
         let searches: Vec<Search> = self.waters.iter().map(|(_, water)| Search::new(water, error)).collect();
-        let height = |place: &Vec3| {
-            let mut around = searches.iter().filter(|search| search.water.covers(search.local(*place)));
-            let search = around.next()?;
-            if around.next().is_some() {
-                return self.sample(*place).map(|sample| sample.height);
-            }
-            search.height(*place)
-        };
         let fill = |first: usize, chunk: &mut [Option<f32>]| {
-            chunk.iter_mut().zip(&places[first..]).for_each(|(found, place)| *found = height(place));
+            for (found, places) in chunk.chunks_mut(AT_ONCE).zip(places[first..].chunks(AT_ONCE)) {
+                self.fill(&searches, places, found);
+            }
         };
         heights.clear();
         heights.resize(places.len(), None);
         match ComputeTaskPool::try_get().filter(|_| places.len() > CHUNK) {
             Some(pool) => _ = heights.par_chunk_map_mut(pool, CHUNK, |index, chunk| fill(index * CHUNK, chunk)),
             None => fill(0, heights),
+        }
+    }
+
+    /// Finds the heights at up to [`AT_ONCE`] places: all together where they are in one water alone.
+    fn fill(&self, searches: &[Search], places: &[Vec3], heights: &mut [Option<f32>]) {
+        let around = |place: Vec3| searches.iter().filter(move |search| search.covers(place));
+        let sole = |place: Vec3| around(place).next().filter(|_| around(place).nth(1).is_none());
+        if let Some(search) = sole(places[0])
+            && places.iter().all(|place| search.covers(*place) && around(*place).nth(1).is_none())
+        {
+            return search.fill(places, heights);
+        }
+        for (place, height) in places.iter().zip(heights) {
+            match sole(*place) {
+                Some(search) => search.fill(slice::from_ref(place), slice::from_mut(height)),
+                None => *height = self.sample(*place).map(|sample| sample.height),
+            }
         }
     }
 }
@@ -74,17 +86,31 @@ impl<'a> Search<'a> {
         self.water.local_from_world.transform_point2(place.xz())
     }
 
-    fn height(&self, place: Vec3) -> Option<f32> {
-        let local = self.local(place);
-        if let Some(quick) = &self.quick {
-            let elevation = quick.height(local, |rest| self.water.fade(rest));
-            let depth = self.water.ground_depth(local) + elevation;
+    fn covers(&self, place: Vec3) -> bool {
+        self.water.covers(self.local(place))
+    }
+
+    /// Finds the heights at up to [`AT_ONCE`] places that the water covers.
+    fn fill(&self, places: &[Vec3], heights: &mut [Option<f32>]) {
+        let mut local = [Vec2::ZERO; AT_ONCE];
+        let local = &mut local[..places.len()];
+        local.iter_mut().zip(places).for_each(|(local, place)| *local = self.local(*place));
+        let Some(quick) = &self.quick else { return self.fill_exactly(local, heights) };
+        let elevations = quick.heights(local, |rest| self.water.fade(rest));
+        for ((place, elevation), height) in local.iter().zip(elevations).zip(heights) {
+            let depth = self.water.ground_depth(*place) + elevation;
+            *height = (depth > 0.0).then_some(self.water.level + elevation);
             // Shallower water than the error may be none.
-            if depth.abs() > self.error {
-                return (depth > 0.0).then_some(self.water.level + elevation);
+            if depth.abs() <= self.error {
+                self.fill_exactly(slice::from_ref(place), slice::from_mut(height));
             }
         }
-        find(self.water, local).map(|found| self.water.level + found.elevation)
+    }
+
+    fn fill_exactly(&self, local: &[Vec2], heights: &mut [Option<f32>]) {
+        for (height, found) in heights.iter_mut().zip(find(self.water, local)) {
+            *height = found.map(|found| self.water.level + found.elevation);
+        }
     }
 }
 

@@ -8,6 +8,7 @@ pub use swim::Submersion;
 
 use crate::body::ResolvedWater;
 use bevy::{ecs::system::SystemParam, prelude::*};
+use freshet_hydro::waves::{Particle, WaveField};
 
 /// The water at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,19 +46,38 @@ impl WaterQuery<'_, '_> {
     /// the position counts only where there is no other: whoever falls from under the pond falls into the lake. A water without a
     /// bed has no bottom.
     pub fn sample(&self, position: Vec3) -> Option<WaterSample> {
-        let samples = self.waters.iter().filter_map(|(entity, water)| sample(entity, water, position.xz()));
+        let place = [position.xz()];
+        let samples = self.waters.iter().filter_map(|(entity, water)| samples(entity, water, &place)[0].take());
         samples.min_by(|a, b| {
             let ((a_rank, a_distance), (b_rank, b_distance)) = (rank(a, position.y), rank(b, position.y));
             a_rank.cmp(&b_rank).then(a_distance.total_cmp(&b_distance)).then(a.water.cmp(&b.water))
         })
     }
 
-    /// The `water` at world xz, if it is there.
+    /// The water that [`WaterQuery::sample`] finds; where there is but one, whether it is dry there or not.
     #[cfg(feature = "rapier")]
-    pub(crate) fn sample_of(&self, water: Entity, place: Vec2) -> Option<WaterSample> {
-        self.waters.get(water).ok().and_then(|(entity, water)| sample(entity, water, place))
+    pub(crate) fn water_at(&self, position: Vec3) -> Option<Entity> {
+        let covers = |water: &ResolvedWater| water.covers(water.local_from_world.transform_point2(position.xz()));
+        let mut around = self.waters.iter().filter(|(_, water)| covers(water));
+        let first = around.next()?;
+        match around.next() {
+            None => Some(first.0),
+            Some(_) => self.sample(position).map(|sample| sample.water),
+        }
+    }
+
+    /// The `water` at up to [`AT_ONCE`] places of the world (xz, m), where it is there.
+    #[cfg(feature = "rapier")]
+    pub(crate) fn samples_of(&self, water: Entity, places: &[Vec2]) -> Samples {
+        self.waters.get(water).map_or_else(|_| Samples::default(), |(entity, water)| samples(entity, water, places))
     }
 }
+
+/// How many places are looked up at the cost of little more than one.
+pub(crate) const AT_ONCE: usize = WaveField::AT_ONCE;
+
+/// The water at several places.
+pub(crate) type Samples = [Option<WaterSample>; AT_ONCE];
 
 /// Thickness of the ground that belongs to the water over it, m: bodies sink in a little, and beds are coarser than terrain.
 const GROUND: f32 = 0.5;
@@ -76,43 +96,57 @@ fn rank(sample: &WaterSample, height: f32) -> (u8, f32) {
 
 /// The surface of a water at a place.
 struct Found {
-    /// The particle at rest that is there now, local xz, m.
-    rest: Vec2,
+    /// The particle of its waves that is there now.
+    particle: Particle,
     /// Height over the still water's, m.
     elevation: f32,
     /// Depth of the column, m.
     depth: f32,
 }
 
-/// The surface of `water` at local `place` of its rectangle, if that is not dry.
-fn find(water: &ResolvedWater, place: Vec2) -> Option<Found> {
-    let (rest, elevation) = water.surface(place);
-    let depth = water.ground_depth(place) + elevation;
-    (depth > 0.0).then_some(Found { rest, elevation, depth })
+/// The surface of `water` at up to [`AT_ONCE`] local `places` of its rectangle, where that is not dry.
+fn find(water: &ResolvedWater, places: &[Vec2]) -> [Option<Found>; AT_ONCE] {
+    let particles = water.particles(places);
+    std::array::from_fn(|index| {
+        let (place, particle) = (*places.get(index)?, particles[index]);
+        let elevation = water.elevation(&particle);
+        let depth = water.ground_depth(place) + elevation;
+        (depth > 0.0).then_some(Found { particle, elevation, depth })
+    })
 }
 
-/// `water` at world xz, if it is there.
-fn sample(entity: Entity, water: &ResolvedWater, place: Vec2) -> Option<WaterSample> {
-    let local = water.local_from_world.transform_point2(place);
-    if !water.covers(local) {
-        return None;
+/// `water` at up to [`AT_ONCE`] places of the world (xz, m), where it is there.
+fn samples(entity: Entity, water: &ResolvedWater, places: &[Vec2]) -> Samples {
+    let mut local = [Vec2::ZERO; AT_ONCE];
+    let local = &mut local[..places.len()];
+    local.iter_mut().zip(places).for_each(|(local, place)| *local = water.local_from_world.transform_point2(*place));
+    if !local.iter().any(|place| water.covers(*place)) {
+        return default();
     }
-    let Found { rest, elevation, depth } = find(water, local)?;
-    let fade = water.fade(rest);
-    let current = water.current(local);
-    let flowing = water.simulated_at(rest).unwrap_or_default();
+    let found = find(water, local);
+    let mut samples = Samples::default();
+    for ((sample, found), place) in samples.iter_mut().zip(found).zip(local) {
+        *sample = found.filter(|_| water.covers(*place)).map(|found| sample_of(entity, water, *place, &found));
+    }
+    samples
+}
+
+/// What is known of `water` at local `place`.
+fn sample_of(entity: Entity, water: &ResolvedWater, place: Vec2, found: &Found) -> WaterSample {
+    let Found { particle, elevation, depth } = found;
+    let current = water.current(place);
+    let flowing = water.simulated_at(particle.rest).unwrap_or_default();
     // The surface of flowing water moves with it: w = ∂η/∂t + u·∇η.
     let rises = flowing.rising + current.dot(flowing.slope);
-    let velocity = vec3(current.x, rises, current.y) + water.waves.velocity(rest, fade);
-    let normal = water.waves.normal(rest, fade);
-    let tilted = normal - vec3(flowing.slope.x, 0.0, flowing.slope.y) * normal.y;
-    Some(WaterSample {
+    let velocity = vec3(current.x, rises, current.y) + particle.velocity;
+    let tilted = particle.normal - vec3(flowing.slope.x, 0.0, flowing.slope.y) * particle.normal.y;
+    WaterSample {
         water: entity,
         height: water.level + elevation,
         normal: water.direction_to_world(tilted.normalize()),
         velocity: water.direction_to_world(velocity),
-        depth,
-        ice: water.ice_thickness(local),
+        depth: *depth,
+        ice: water.ice_thickness(place),
         age: water.simulated.as_ref().map_or(0.0, |simulated| simulated.age),
-    })
+    }
 }

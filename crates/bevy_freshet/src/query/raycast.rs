@@ -1,5 +1,5 @@
 //! Where a ray meets the waves.
-use super::{WaterQuery, WaterSample, sample};
+use super::{WaterQuery, WaterSample, samples};
 use crate::body::ResolvedWater;
 use bevy::{math::Vec3A, prelude::*};
 
@@ -33,7 +33,8 @@ impl WaterQuery<'_, '_> {
             .filter_map(|(entity, water)| {
                 let distance = meet(water, ray, max)?;
                 let position = ray.get_point(distance);
-                Some(WaterHit { distance, position, surface: sample(entity, water, position.xz())? })
+                let surface = samples(entity, water, &[position.xz()])[0].take()?;
+                Some(WaterHit { distance, position, surface })
             })
             .min_by(|a, b| a.distance.total_cmp(&b.distance).then(a.surface.water.cmp(&b.surface.water)))
     }
@@ -49,7 +50,7 @@ fn meet(water: &ResolvedWater, ray: Ray3d, max: f32) -> Option<f32> {
     let direction = local_from_world.transform_vector3a(ray.direction.as_vec3().into());
     let height = |t: f32| {
         let point = origin + direction * t;
-        point.y - water.surface(Vec3::from(point).xz()).1
+        point.y - water.surface(Vec3::from(point).xz())
     };
 
     let (lowest, highest) = water.elevations();

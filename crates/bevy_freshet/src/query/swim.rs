@@ -80,10 +80,10 @@ impl WaterQuery<'_, '_> {
         let below = depth.clamp(0.0, surface.depth);
 
         let place = water.local_from_world.transform_point2(position.xz());
-        let (rest, _) = water.surface(place);
-        let fade = water.fade(rest);
-        let waves = |below| water.waves.velocity_below(rest, fade, below, surface.depth);
-        let at_surface = water.direction_to_world(water.waves.velocity(rest, fade));
+        let [particle, ..] = water.particles(&[place]);
+        let fade = water.fade(particle.rest);
+        let waves = |below| water.waves.velocity_below(particle.rest, fade, below, surface.depth);
+        let at_surface = water.direction_to_world(particle.velocity);
         // What is no wave rises and falls with the surface, and less so towards the bed.
         let flowing = (surface.velocity - at_surface) * vec3(1.0, (1.0 - below / surface.depth).max(0.0), 1.0);
         Some(Submersion { surface, depth, velocity: flowing + water.direction_to_world(waves(below)), above_bed })

@@ -169,7 +169,7 @@ impl Twin {
         };
         let stir = Stir {
             depth,
-            crest: water.waves.displacement(place, 1.0).y,
+            crest: water.waves.particle(place, 1.0).displacement.y,
             shear: foam::shear(along(Vec2::X), along(Vec2::Y)),
             convergence: foam::convergence(along(Vec2::X), along(Vec2::Y)),
             speed: current.length(),

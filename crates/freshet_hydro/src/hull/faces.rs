@@ -1,11 +1,9 @@
 //! What the water does to faces that are wholly under it, eight at a time.
-use super::{
-    flotation::Waterplane,
+use super::{flotation::Waterplane, load::HullPoint, resistance::FaceDrag};
+use crate::{
     lanes::{LANES, Lanes, Vectors},
-    load::HullPoint,
-    resistance::FaceDrag,
+    load::{Load, Motion, Spatial, Wrench},
 };
-use crate::load::{Load, Motion, Spatial, Wrench};
 use glam::{Mat3, Vec2, Vec3};
 
 /// Wet triangles, of which eight are worked on at a time.

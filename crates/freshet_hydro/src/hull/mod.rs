@@ -17,7 +17,6 @@ mod convex;
 mod faces;
 mod flotation;
 mod inside;
-mod lanes;
 mod load;
 mod moments;
 mod orient;

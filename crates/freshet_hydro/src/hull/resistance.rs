@@ -1,5 +1,5 @@
 //! How water resists a hull: skin friction, pressure on faces that the water strikes or leaves, and waves sent out.
-use super::lanes::{Lanes, Vectors};
+use crate::lanes::{Lanes, Vectors};
 
 /// Kinematic viscosity ν of water at 20 °C, m²/s.
 pub const VISCOSITY: f32 = 1.0e-6;

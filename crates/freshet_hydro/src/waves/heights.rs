@@ -1,84 +1,70 @@
 //! Heights of waves within a stated error, for less than the exact search costs.
-use super::{INVERSION_TOLERANCE, MAX_INVERSION_STEPS, WaveField};
+use super::{INVERSION_TOLERANCE, WaveField, search::Search};
 use glam::Vec2;
 
 /// Finds the height of a [`WaveField`] above places within a stated error: the lowest waves are left out, and the search for the particle
 /// above a place ends as soon as what remains of it cannot matter.
 ///
-/// With L the bound of how much displacements differ per distance of two particles (Σ k A, and what the fading of the waves adds), every
-/// step of the search contracts by L. So
+/// With L the bound of how much displacements differ per distance of two particles (Σ k A, and what the fading of the waves adds),
 ///
-/// * after a step of length s the particle is at most s L/(1 − L) off, and its height no more;
+/// * a particle that is found s beside the place is at most s/(1 − L) off, and its height s L/(1 − L);
 /// * trains left out, whose amplitudes add up to a, shift the height by at most a/(1 − L).
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightSearch {
     /// The waves that count.
     waves: WaveField,
-    /// Step after which the search has come near enough, m.
-    step: f32,
+    /// How far beside the place a particle may be, m.
+    tolerance: f32,
 }
 
 impl HeightSearch {
-    /// A search in `waves` whose heights differ by at most `error` (m) from those over [`WaveField::rest_below`], whose own error counts in,
+    /// A search in `waves` whose heights differ by at most `error` (m) from those over [`WaveField::particle_above`], whose own error counts in,
     /// but for the rounding of `f32`.
     ///
     /// `fading` (1/m, ≥ 0) bounds how much the waves' fade differs per distance. `None` if so small an error is not to be had for less, or
-    /// cannot be bounded, because the surface may fold: then ask [`WaveField::rest_below`].
+    /// cannot be bounded, because the surface may fold: then ask [`WaveField::particle_above`].
     pub fn new(waves: &WaveField, fading: f32, error: f32) -> Option<Self> {
         let bound = |waves: &WaveField| waves.total_steepness() + waves.total_amplitude() * fading;
         let contraction = bound(waves);
         if contraction.is_nan() || contraction >= 1.0 {
             return None;
         }
-        let last = libm::powf(contraction, (MAX_INVERSION_STEPS - 1) as f32) * waves.total_amplitude();
-        let of_exact = contraction * contraction / (1.0 - contraction) * last.max(INVERSION_TOLERANCE);
+        let unfinished = waves.unfinished(contraction);
+        let of_exact = contraction / (1.0 - contraction) * unfinished.max(INVERSION_TOLERANCE);
         let room = error - of_exact;
         if room.is_nan() || room <= of_exact {
             return None;
         }
         if waves.total_amplitude() <= room {
-            return Some(Self { waves: WaveField::default(), step: 0.0 });
+            return Some(Self { waves: WaveField::default(), tolerance: 0.0 });
         }
         let mut kept = waves.clone();
+        kept.trains.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
         let mut left_out = 0.0;
-        while let Some(lowest) = lowest(&kept) {
-            let mut fewer = kept.clone();
-            let amplitude = left_out + fewer.trains.remove(lowest).amplitude;
+        while let Some(lowest) = kept.trains.pop() {
+            let amplitude = left_out + lowest.amplitude;
             // The other half of the room is the search's.
-            if amplitude > 0.5 * room * (1.0 - bound(&fewer)) {
+            if amplitude > 0.5 * room * (1.0 - bound(&kept)) {
+                kept.trains.push(lowest);
                 break;
             }
-            (kept, left_out) = (fewer, amplitude);
+            left_out = amplitude;
         }
         let contraction = bound(&kept);
-        let step = (room * (1.0 - contraction) - left_out) / contraction.max(f32::MIN_POSITIVE);
-        Some(Self { waves: kept, step })
+        let tolerance = (room * (1.0 - contraction) - left_out) / contraction.max(f32::MIN_POSITIVE);
+        (kept.unfinished(contraction) <= tolerance).then_some(Self { waves: kept, tolerance })
     }
 
-    /// Height of the waves above `place` (xz, m) over still water, m; `fade` is their share at a particle at rest.
-    pub fn height(&self, place: Vec2, mut fade: impl FnMut(Vec2) -> f32) -> f32 {
+    /// Heights of the waves above up to [`WaveField::AT_ONCE`] places (xz, m), at least one, over still water, m; `fade` is their share at a
+    /// particle at rest. What belongs to no place is that of the first.
+    pub fn heights(&self, places: &[Vec2], fade: impl FnMut(Vec2) -> f32) -> [f32; WaveField::AT_ONCE] {
         if self.waves.trains.is_empty() {
-            return 0.0;
+            return [0.0; WaveField::AT_ONCE];
         }
-        let mut rest = place;
-        let mut height = 0.0;
-        for _ in 0..=MAX_INVERSION_STEPS {
-            let moved = self.waves.displacement(rest, fade(rest));
-            let next = place - Vec2::new(moved.x, moved.z);
-            height = moved.y;
-            if next.distance_squared(rest) <= self.step * self.step {
-                break;
-            }
-            rest = next;
-        }
-        height
+        let mut search = Search::new(places, self.tolerance);
+        search.run(&self.waves.trains, fade);
+        search.heights.0
     }
-}
-
-/// The train of the least amplitude.
-fn lowest(waves: &WaveField) -> Option<usize> {
-    let amplitudes = waves.trains.iter().map(|train| train.amplitude).enumerate();
-    amplitudes.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(index, _)| index)
 }
 
 #[cfg(test)]
@@ -116,12 +102,13 @@ mod tests {
                         assert!(error < 0.1 && steepness > 0.6, "no search for {error} m of {steepness}");
                         continue;
                     };
-                    let worst = places()
-                        .map(|at| {
-                            let rest = field.rest_below(at, fade);
-                            (field.displacement(rest, fade(rest)).y - search.height(at, fade)).abs()
-                        })
-                        .fold(0.0, f32::max);
+                    let off = |places: &[Vec2]| {
+                        let exact = field.particles_above(places, fade).map(|particle| particle.displacement.y);
+                        let found = search.heights(places, fade);
+                        std::array::from_fn::<_, 8, _>(|lane| (exact[lane] - found[lane]).abs())
+                    };
+                    let places: Vec<Vec2> = places().collect();
+                    let worst = places.chunks(8).flat_map(off).fold(0.0, f32::max);
                     assert!(worst <= error, "{worst} m off, more than {error} m at steepness {steepness}");
                 }
             }
@@ -148,6 +135,6 @@ mod tests {
             assert_eq!(HeightSearch::new(&sea(steepness), fading, error), None);
         }
         let still = HeightSearch::new(&WaveField::default(), f32::INFINITY, 1e-3);
-        assert!(still.is_none_or(|still| still.height(Vec2::ONE, |_| 1.0) == 0.0));
+        assert!(still.is_none_or(|still| still.heights(&[Vec2::ONE], |_| 1.0) == [0.0; 8]));
     }
 }
