@@ -5,62 +5,59 @@ use bevy_freshet::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::time::Instant;
 
-/// When parts of a step began and ended, and how long they took in all, s.
+/// When the part of a step that is being timed began, and how long each part took in all, s.
 #[derive(Resource, Default)]
 struct Stopwatch {
     began: Option<Instant>,
-    water: f64,
-    forces: f64,
-    solver: f64,
+    parts: [f64; PARTS.len()],
 }
+
+/// What Rapier's plugin does before its solver's step, the water, and so on.
+const PARTS: [&str; 5] = ["Rapier: reading", "water", "forces", "Rapier: solver", "Rapier: writing"];
 
 impl Stopwatch {
     fn start(mut watch: ResMut<Self>) {
         watch.began = Some(Instant::now());
     }
 
-    fn lap(&mut self) -> f64 {
+    fn lap<const PART: usize>(mut watch: ResMut<Self>) {
         let now = Instant::now();
-        self.began.replace(now).map_or(0.0, |began| (now - began).as_secs_f64())
+        let took = watch.began.replace(now).map_or(0.0, |began| (now - began).as_secs_f64());
+        watch.parts[PART] += took;
     }
 }
 
-/// What floating crates cost beside the solver's own step, on waves. `cargo test … what_bodies_cost -- --ignored --nocapture`.
+/// What floating crates cost beside the solver, on waves, alone and side by side. `cargo test … what_bodies_cost -- --ignored --nocapture`.
 #[test]
 #[ignore = "measures"]
 fn what_bodies_cost() {
-    println!("| crates | water, µs per crate | forces, µs per crate | solver, µs per crate |\n|---|---|---|---|");
-    for count in [1, 10, 100, 1000, 2000] {
+    println!("µs per crate\n| crates | apart | {} |\n|---|---|---|---|---|---|---|", PARTS.join(" | "));
+    for (count, apart) in [(1, 1.6), (10, 1.6), (100, 1.6), (1000, 1.6), (2000, 1.6), (100, 1.0), (1000, 1.0)] {
         let mut app = app();
         let water = (Water::new(Vec2::splat(4000.0)), WaterWaves::default(), Transform::from_xyz(0.0, LEVEL, 0.0));
         app.world_mut().spawn(water);
         app.init_resource::<Stopwatch>().add_systems(
             FixedUpdate,
             (
-                Stopwatch::start.after(PhysicsSet::SyncBackend).before(WaterSystems::Sample),
-                (|mut watch: ResMut<Stopwatch>| watch.water += watch.lap())
-                    .after(WaterSystems::Sample)
-                    .before(WaterSystems::Force),
-                (|mut watch: ResMut<Stopwatch>| watch.forces += watch.lap())
-                    .after(WaterSystems::Force)
-                    .before(PhysicsSet::StepSimulation),
-                (|mut watch: ResMut<Stopwatch>| watch.solver += watch.lap())
-                    .after(PhysicsSet::StepSimulation)
-                    .before(PhysicsSet::Writeback),
+                Stopwatch::start.before(PhysicsSet::SyncBackend),
+                Stopwatch::lap::<0>.after(PhysicsSet::SyncBackend).before(WaterSystems::Sample),
+                Stopwatch::lap::<1>.after(WaterSystems::Sample).before(WaterSystems::Force),
+                Stopwatch::lap::<2>.after(WaterSystems::Force).before(PhysicsSet::StepSimulation),
+                Stopwatch::lap::<3>.after(PhysicsSet::StepSimulation).before(PhysicsSet::Writeback),
+                Stopwatch::lap::<4>.after(PhysicsSet::Writeback),
             ),
         );
         for k in 0..count {
             let wooden = body(Collider::cuboid(0.5, 0.5, 0.5), Floating::with_density(400.0), 0.0);
             let wooden = app.world_mut().spawn(wooden).id();
-            let place = Vec3::new(1.6 * (k % 50) as f32 - 40.0, LEVEL, 1.6 * (k / 50) as f32 - 32.0);
-            app.world_mut().get_mut::<Transform>(wooden).unwrap().translation = place;
+            let place = apart * Vec3::new((k % 50) as f32 - 25.0, 0.0, (k / 50) as f32 - 20.0);
+            app.world_mut().get_mut::<Transform>(wooden).unwrap().translation = place.with_y(LEVEL);
         }
         run(&mut app, 1.0);
         *app.world_mut().resource_mut::<Stopwatch>() = Stopwatch::default();
         run(&mut app, 2.0);
-        let watch = app.world().resource::<Stopwatch>();
-        let per_crate = |seconds: f64| 1e6 * seconds / (120 * count) as f64;
-        let [water, forces, solver] = [watch.water, watch.forces, watch.solver].map(per_crate);
-        println!("| {count} | {water:.2} | {forces:.2} | {solver:.2} |");
+        let parts = app.world().resource::<Stopwatch>().parts;
+        let row = parts.map(|seconds| format!("{:.2}", 1e6 * seconds / (120 * count) as f64)).join(" | ");
+        println!("| {count} | {apart} m | {row} |");
     }
 }

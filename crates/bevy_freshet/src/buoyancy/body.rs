@@ -5,7 +5,7 @@ use super::{
     exchange::Exchanging,
     floating::{Buoyancy, BuoyancyModel, Floating, Weight},
     footprint::Footprint,
-    force::{Lent, Rest},
+    force::{Lent, Loan, Rest},
     form::Form,
     held::Held,
     solid::{Flaw, Solid},
@@ -39,7 +39,9 @@ pub(crate) struct Body {
     pub(super) submerged: Option<f32>,
     /// Water around the body, looked up in this step.
     pub(super) footprint: Footprint,
-    /// What the solver has to give back after the step.
+    /// What the solver is to get for the coming step.
+    pub(super) loan: Option<Loan>,
+    /// What it has to give back after the step.
     pub(super) lent: Option<Lent>,
     /// What it and simulated water do to each other.
     pub(super) exchanging: Exchanging,

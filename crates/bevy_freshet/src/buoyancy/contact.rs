@@ -111,9 +111,9 @@ impl Felt {
     fn meeting(&self, footprint: &Footprint, [from, to]: [Wet; 2], motion: Motion) -> Meeting {
         let grown = to.volume - from.volume;
         let arm = if grown > 0.0 { (to.moment - from.moment) / grown } else { Vec2::ZERO };
-        let at = footprint.nearest(self.center.xz() + arm);
+        let at = footprint.lattice.nearest(self.center.xz() + arm);
         let dry = Surface { height: footprint.lowest, ..default() };
-        let water = footprint.at(at).or_else(|| footprint.at(self.center.xz())).unwrap_or(dry);
+        let water = footprint.lattice.at(at).or_else(|| footprint.lattice.at(self.center.xz())).unwrap_or(dry);
         let place = vec3(at.x, water.height, at.y);
         let normal = vec3(-water.slope.x, 1.0, -water.slope.y).normalize();
         let velocity = motion.linear + motion.angular.cross(place - self.center);
@@ -125,7 +125,7 @@ impl Before {
     fn new(felt: &Felt, footprint: &Footprint) -> Self {
         let (center, velocity) = (felt.center, felt.motion.linear);
         let none = Surface { height: f32::NEG_INFINITY, ..default() };
-        let water = footprint.at(center.xz()).unwrap_or(none);
+        let water = footprint.lattice.at(center.xz()).unwrap_or(none);
         let pace = velocity.length() + water.velocity.length();
         Self { wet: felt.wet(), center, velocity, gap: footprint.lowest - water.height, pace }
     }

@@ -167,7 +167,7 @@ pub(super) fn displace(
         let body = contexts.get(link.0).ok().and_then(|set| set.bodies.get(handle.0));
         let Some(body) = body.filter(|body| any && body.is_enabled()) else { continue };
         let Body { form: Some(form), footprint, exchanging, .. } = &mut *state else { continue };
-        let (Some(entity), Some(surface)) = (footprint.water, footprint.plane()) else { continue };
+        let (Some(entity), Some(surface)) = (footprint.water, footprint.lattice.plane()) else { continue };
         let Some(mut water) = waters.get_mut(entity).ok().filter(|water| water.is_moved(&mut reported)) else {
             continue;
         };

@@ -78,7 +78,7 @@ fn motion(body: &RigidBody) -> Motion {
 fn load(state: &mut Body, body: &RigidBody, gravity: Vec3) -> Load {
     let Body { form: Some(form), footprint, drag, submerged, .. } = state else { return Load::default() };
     let before = submerged.replace(0.0);
-    if footprint.is_dry() {
+    if footprint.lattice.is_dry() {
         return Load::default();
     }
     let fluid = Fluid { gravity: (-gravity.y).max(0.0), ..Fluid::default() };
@@ -115,58 +115,87 @@ fn is_moving(body: &RigidBody, length: f32, gravity: f32, torque: f32) -> bool {
         || is_righted && turn > RESTING_TURN * speed
 }
 
-/// Computes the forces on all bodies and lends them to the solver; wakes sleepers whose water has changed.
-pub(super) fn lend_forces(
+/// What the solver is to get for the coming step.
+pub(super) struct Loan {
+    /// Of the water.
+    wrench: Wrench,
+    /// Gravity and the game's own push.
+    own: Wrench,
+    /// Whether the body may not sleep.
+    wakes: bool,
+}
+
+/// Computes the forces on all bodies, and which sleepers wake because their water has changed. Bodies do not know of each other here: the
+/// order in which threads take them changes nothing.
+pub(super) fn find_forces(
     mut floating: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Body, &mut Buoyancy), With<Floating>>,
-    mut contexts: Query<(&mut RapierRigidBodySet, &RapierConfiguration)>,
+    contexts: Query<(&RapierRigidBodySet, &RapierConfiguration)>,
     mode: Res<TimestepMode>,
     time: Res<Time>,
 ) {
     let dt = step_length(&mode, &time);
-    for (handle, link, mut state, mut buoyancy) in &mut floating {
-        let Ok((mut set, config)) = contexts.get_mut(link.0) else { continue };
-        let Some(body) = set.bodies.get(handle.0) else { continue };
+    floating.par_iter_mut().for_each(|(handle, link, mut state, mut buoyancy)| {
+        let state = &mut *state;
+        state.loan = None;
+        let Ok((set, config)) = contexts.get(link.0) else { return };
+        let Some(body) = set.bodies.get(handle.0) else { return };
         let steps = config.physics_pipeline_active && dt > 0.0;
-        let is_driven = !body.is_dynamic();
-        if !steps || !body.is_enabled() || state.form.is_none() || !is_driven && body.mass() <= 0.0 {
+        let has_mass = !body.is_dynamic() || body.mass() > 0.0;
+        if !(steps && body.is_enabled() && state.form.is_some() && has_mass) {
             state.exchanging.felt = None;
-            continue;
+            return;
         }
-
-        let load = load(&mut state, body, config.gravity);
+        let load = load(state, body, config.gravity);
         let rest = Rest::of(&load);
-        if !is_driven && body.is_sleeping() && !state.rest.is_disturbed(&rest, body.mass() * config.gravity.length()) {
-            continue;
+        let sleeps = body.is_dynamic() && body.is_sleeping();
+        if sleeps && !state.rest.is_disturbed(&rest, body.mass() * config.gravity.length()) {
+            return;
         }
         state.rest = rest;
-        let center = body.center_of_mass();
-        state.felt = Some(Felt { load, center, motion: motion(body), mass: body.mass(), step: dt });
         let own = own_push(body, config.gravity);
         let wrench = force(&load, body, own + state.held.0, dt);
         let pressure = load.pressure.force;
         state.exchanging.felt = Some(Exerted { pressure, resistance: wrench.force - pressure });
-        let height = state.footprint.at(center.xz()).map(|water| water.height);
-        buoyancy.set_if_neq(Buoyancy {
-            volume: buoyancy.volume,
-            submerged_volume: load.submerged_volume,
-            draft: height.map_or(0.0, |height| (height - state.footprint.lowest).max(0.0)),
-            force: wrench.force,
-            torque: wrench.torque,
-            water_velocity: load.water_velocity,
-        });
-
-        if is_driven {
-            continue;
-        }
-        let wake = body.is_sleeping()
+        buoyancy.set_if_neq(told(state, body, &load, &wrench, buoyancy.volume));
+        let wakes = body.is_sleeping()
             || (load.submerged_volume > 0.0
                 && is_moving(body, state.length(), config.gravity.length(), wrench.torque.length()));
-        if !wake && wrench == Wrench::ZERO {
+        state.felt =
+            Some(Felt { load, center: body.center_of_mass(), motion: motion(body), mass: body.mass(), step: dt });
+        state.loan = body.is_dynamic().then_some(Loan { wrench, own, wakes });
+    });
+}
+
+/// What a game is told of the water's force on `body`.
+fn told(state: &Body, body: &RigidBody, load: &Load, wrench: &Wrench, volume: f32) -> Buoyancy {
+    let height = state.footprint.lattice.at(body.center_of_mass().xz()).map(|water| water.height);
+    Buoyancy {
+        volume,
+        submerged_volume: load.submerged_volume,
+        draft: height.map_or(0.0, |height| (height - state.footprint.lowest).max(0.0)),
+        force: wrench.force,
+        torque: wrench.torque,
+        water_velocity: load.water_velocity,
+    }
+}
+
+/// Lends the forces to the solver.
+pub(super) fn lend_forces(
+    mut floating: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink, &mut Body), With<Floating>>,
+    mut contexts: Query<&mut RapierRigidBodySet>,
+    mode: Res<TimestepMode>,
+    time: Res<Time>,
+) {
+    let dt = step_length(&mode, &time);
+    for (handle, link, mut state) in &mut floating {
+        let Some(Loan { wrench, own, wakes }) = state.loan.take() else { continue };
+        if !wakes && wrench == Wrench::ZERO {
             state.held.forget();
             continue;
         }
+        let Ok(mut set) = contexts.get_mut(link.0) else { continue };
         let Some(body) = set.bodies.get_mut(handle.0) else { continue };
-        if wake {
+        if wakes {
             body.wake_up(true);
         }
         let step = Step { motion: motion(body), pushed: own + wrench, length: dt };

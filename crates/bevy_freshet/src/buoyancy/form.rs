@@ -61,11 +61,11 @@ impl Form {
     pub fn load(&mut self, body: &BodyState, fluid: &Fluid, drag: &HullDrag, footprint: &Footprint) -> Load {
         // A hull's coefficients hold for its faces; models without faces have the mean of both.
         let whole = Drag { damping: DAMPING * drag.radiation, coefficient: 0.5 * (drag.bluff + drag.fair) };
-        let surface = |at| footprint.at(at);
+        let surface = |at| footprint.lattice.at(at);
         match &mut self.model {
             Model::Hull { finer, points } => {
-                let hull = if footprint.is_flat() { &self.hull } else { &*finer };
-                hull.load(body, fluid, drag, points, surface)
+                let hull = if footprint.lattice.is_flat() { &self.hull } else { &*finer };
+                hull.load_on(body, fluid, drag, points, &footprint.lattice)
             }
             Model::Voxels(voxels) => voxels.load(body, fluid, &whole, surface),
             Model::Samples(samples) => samples.load(body, fluid, &whole, surface),

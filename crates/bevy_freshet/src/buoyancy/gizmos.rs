@@ -202,7 +202,7 @@ fn draw(
         let Some(hull) = state.form.as_ref().map(|form| &form.hull) else { continue };
         let (_, rotation, position) = transform.to_scale_rotation_translation();
         let pose = Pose { position, rotation };
-        let water = |at| state.footprint.at(at);
+        let water = |at| state.footprint.lattice.at(at);
         let Some(flotation) = hull.flotation(&pose, water) else { continue };
         let push = -config.gravity.with_x(0.0).with_z(0.0) * (WATER_DENSITY * buoyancy.submerged_volume);
         let subject = Subject {

@@ -82,7 +82,9 @@ impl Plugin for BuoyancyPlugin {
                         .after(PhysicsSet::SyncBackend)
                         .before(WaterSystems::Sample),
                     footprint::sample_water.in_set(WaterSystems::Sample),
-                    (force::lend_forces, exchange::return_forces).chain().in_set(WaterSystems::Force),
+                    (force::find_forces, force::lend_forces, exchange::return_forces)
+                        .chain()
+                        .in_set(WaterSystems::Force),
                     (force::take_forces_back, messages::tell_contacts, return_to::return_bodies)
                         .chain()
                         .after(PhysicsSet::StepSimulation)

@@ -13,7 +13,7 @@ use super::{
     faces::{Faces, Sums},
     resistance::FaceDrag,
 };
-use crate::load::{BodyState, Fluid, Load, Surface};
+use crate::load::{BodyState, Fluid, Load, Surface, SurfaceLattice};
 use glam::{Mat3, Vec2, Vec3};
 use pulp::{Arch, Simd, WithSimd};
 
@@ -50,6 +50,18 @@ impl Hull {
         let drag = FaceDrag::new(drag, fluid.density, fluid.gravity, self.length(), speed);
         let sums = self.wetted(points, Faces::new(body.motion, around.base, drag));
         self.finish(&sums, body, fluid, &around)
+    }
+
+    /// [`Hull::load`] on a lattice. Not generic, so that it is compiled here, whoever calls it and however that is compiled.
+    pub fn load_on(
+        &self,
+        body: &BodyState,
+        fluid: &Fluid,
+        drag: &HullDrag,
+        points: &mut Vec<HullPoint>,
+        lattice: &SurfaceLattice,
+    ) -> Load {
+        self.load(body, fluid, drag, points, |at| lattice.at(at))
     }
 
     /// What all faces under water add up to. Not generic, so that it is compiled here, whoever calls it and however that is compiled.

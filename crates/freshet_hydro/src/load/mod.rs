@@ -3,9 +3,11 @@
 //! * A [`Load`] holds pressure, resistance, added mass and stiffness of a body in a given pose and motion;
 //! * [`Load::over_step`] turns them into the constant force and torque of a time step that can never overshoot.
 
+mod lattice;
 mod spatial;
 mod step;
 
+pub use lattice::SurfaceLattice;
 pub use spatial::Spatial;
 pub use step::Inertia;
 
