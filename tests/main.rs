@@ -24,6 +24,8 @@ mod buoyancy_shapes;
 mod endurance;
 #[cfg(feature = "rapier")]
 mod exchange;
+#[cfg(feature = "rapier")]
+mod exchange_changes;
 mod features;
 mod fields;
 mod flow;

@@ -249,7 +249,10 @@ pub(super) fn build_hulls(
                 if let Err(problem) = state.build(solids, model, most, &mut report) {
                     reported.warn(entity, "Floating", problem);
                 }
-                buoyancy.volume = state.form.as_ref().map_or(0.0, |form| form.hull.volume());
+                match &state.form {
+                    Some(form) => buoyancy.volume = form.hull.volume(),
+                    None => *buoyancy = Buoyancy::default(),
+                }
             }
             state.drag = resolve_drag(entity, &floating, &mut reported);
             state.mass = state.resolve_mass(entity, &floating, &mut reported);
