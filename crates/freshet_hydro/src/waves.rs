@@ -138,6 +138,19 @@ impl WaveField {
         libm::powf(contraction, search::LEAST_CONTRACTIONS as f32) * self.total_amplitude()
     }
 
+    /// Replaces `carried` by the waves that samples `spacing` (m) apart can carry: all of a train above four samples a wave, nothing below
+    /// two, smooth between. What is shorter would be seen at random. Allocates only if `carried` has no room.
+    pub fn carried_by(&self, spacing: f32, carried: &mut Self) {
+        let share = |train: &WaveTrain| {
+            let samples = TAU / (train.wave_vector.length() * spacing).max(f32::MIN_POSITIVE);
+            let t = (0.5 * (samples - 2.0)).clamp(0.0, 1.0);
+            t * t * (3.0 - 2.0 * t)
+        };
+        let scaled = |train: &WaveTrain| WaveTrain { amplitude: share(train) * train.amplitude, ..*train };
+        carried.trains.clear();
+        carried.trains.extend(self.trains.iter().map(scaled).filter(|train| train.amplitude > 0.0));
+    }
+
     /// Sum of `k A` of all trains: from 1 on the surface can fold over itself.
     pub fn total_steepness(&self) -> f32 {
         self.trains.iter().map(|train| train.wave_vector.length() * train.amplitude).sum()
@@ -268,6 +281,19 @@ mod tests {
         let middle = field.velocity_below(rest, 0.8, 0.6, 1.5);
         assert_relative_eq!(middle.y, surface.y * (k * 0.9).sinh() / (k * 1.5).sinh(), max_relative = 1e-4);
         assert!(field.velocity_below(rest, 0.8, 0.0, 0.0).is_finite());
+    }
+
+    #[test]
+    fn samples_carry_waves_of_four_samples_and_none_of_two() {
+        let waves: Vec<_> = [0.9, 2.0, 3.0, 4.0, 9.0]
+            .map(|wavelength| Wave { direction: Vec2::X, wavelength, steepness: 0.1, phase: 0.0 })
+            .to_vec();
+        let (field, mut carried) = (WaveField::at(&waves, 5.0, 1.0), WaveField::default());
+        field.carried_by(1.0, &mut carried);
+        assert_eq!(carried.trains[1..], field.trains[3..]);
+        assert_relative_eq!(carried.trains[0].amplitude, 0.5 * field.trains[2].amplitude, max_relative = 1e-5);
+        field.carried_by(0.0, &mut carried);
+        assert_eq!(carried, field);
     }
 
     #[test]

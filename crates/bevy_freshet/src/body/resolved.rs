@@ -144,7 +144,12 @@ impl ResolvedWater {
     /// The particles of the waves above up to [`WaveField::AT_ONCE`] local `places`, as if there were water everywhere. More places cost
     /// hardly more than one.
     pub fn particles(&self, places: &[Vec2]) -> [Particle; WaveField::AT_ONCE] {
-        self.waves.particles_above(places, |rest| self.fade(rest))
+        self.particles_of(&self.waves, places)
+    }
+
+    /// The same, of some of its `waves` only.
+    pub fn particles_of(&self, waves: &WaveField, places: &[Vec2]) -> [Particle; WaveField::AT_ONCE] {
+        waves.particles_above(places, |rest| self.fade(rest))
     }
 
     /// Height of the surface over the still water's where `particle` is, m: waves on what is simulated, lowered by ice.

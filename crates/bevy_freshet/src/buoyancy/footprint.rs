@@ -11,15 +11,20 @@ use bevy_rapier3d::{
     plugin::context::{RapierContextEntityLink, RapierRigidBodySet},
     prelude::RapierRigidBodyHandle,
 };
-use freshet_hydro::load::{Surface, SurfaceLattice};
+use freshet_hydro::{
+    load::{Surface, SurfaceLattice},
+    waves::WaveField,
+};
 
-/// Places along each side of the lattice under a hull: waves as long as the hull are seen, much shorter ones are not.
+/// Places along each side of the lattice under a hull: waves longer than 4/3 of it are seen, shorter than 2/3 not.
 const PLACES: usize = 4;
 
 /// What is known of the water around a body.
 #[derive(Default)]
 pub(super) struct Footprint {
     pub lattice: SurfaceLattice,
+    /// Waves that the lattice can carry: a body does not feel shorter ones, which push it up here and down there.
+    waves: WaveField,
     /// Height of the body's lowest point, m.
     pub lowest: f32,
     /// The water that the body is in or over; none where all is dry.
@@ -56,9 +61,14 @@ pub(super) fn sample_water(
         // beyond only what else reaches up to the keel. What lies far below the brim of a pond is not in it.
         let keel = |at: Vec2| vec3(at.x, aabb.mins.y, at.y);
         let mut own = water.water_at(keel(corners[0].midpoint(corners[1])));
-        state.footprint.lowest = aabb.mins.y;
-        state.footprint.lattice.look_up(corners, places, |places, surfaces| {
-            let found = own.map_or_else(Default::default, |own| water.samples_of(own, places));
+        let Footprint { lattice, waves, lowest, .. } = &mut state.footprint;
+        *lowest = aabb.mins.y;
+        if let Some(own) = own {
+            let spacing = (corners[1] - corners[0]).max_element() / (places - 1) as f32;
+            water.waves_carried_by(own, spacing, waves);
+        }
+        lattice.look_up(corners, places, |places, surfaces| {
+            let found = own.map_or_else(Default::default, |own| water.samples_of(own, waves, places));
             for ((place, surface), found) in places.iter().zip(surfaces).zip(found) {
                 let reaches = |other: &WaterSample| own.is_none() || other.height > aabb.mins.y;
                 let found = found.or_else(|| water.sample(keel(*place)).filter(reaches));

@@ -33,8 +33,11 @@ impl Held {
         let free = Vec3::select(inertia.inverse_mass.cmpgt(Vec3::ZERO), Vec3::ONE, Vec3::ZERO);
         let needed = (body.linvel() - step.motion.linear) * (body.mass() / step.length);
         // Where an axis is locked nothing is known of the torques.
-        let turns = inertia.inverse_inertia.determinant() > 0.0;
-        let turned = || inertia.inverse_inertia.inverse() * ((body.angvel() - step.motion.angular) / step.length);
+        // In double precision, as the determinant of an inertia goes with the fifteenth power of the length.
+        let inverse_inertia = inertia.inverse_inertia.as_dmat3();
+        let turns = inverse_inertia.determinant() > 0.0;
+        let acceleration = (body.angvel() - step.motion.angular) / step.length;
+        let turned = || (inverse_inertia.inverse() * acceleration.as_dvec3()).as_vec3();
         let held = Wrench {
             force: (needed - step.pushed.force) * free,
             torque: if turns { turned() - step.pushed.torque } else { Vec3::ZERO },

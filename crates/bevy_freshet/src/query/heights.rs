@@ -108,7 +108,7 @@ impl<'a> Search<'a> {
     }
 
     fn fill_exactly(&self, local: &[Vec2], heights: &mut [Option<f32>]) {
-        for (height, found) in heights.iter_mut().zip(find(self.water, local)) {
+        for (height, found) in heights.iter_mut().zip(find(self.water, &self.water.waves, local)) {
             *height = found.map(|found| self.water.level + found.elevation);
         }
     }

@@ -47,7 +47,8 @@ impl WaterQuery<'_, '_> {
     /// bed has no bottom.
     pub fn sample(&self, position: Vec3) -> Option<WaterSample> {
         let place = [position.xz()];
-        let samples = self.waters.iter().filter_map(|(entity, water)| samples(entity, water, &place)[0].take());
+        let samples =
+            self.waters.iter().filter_map(|(entity, water)| samples(entity, water, &water.waves, &place)[0].take());
         samples.min_by(|a, b| {
             let ((a_rank, a_distance), (b_rank, b_distance)) = (rank(a, position.y), rank(b, position.y));
             a_rank.cmp(&b_rank).then(a_distance.total_cmp(&b_distance)).then(a.water.cmp(&b.water))
@@ -66,10 +67,19 @@ impl WaterQuery<'_, '_> {
         }
     }
 
-    /// The `water` at up to [`AT_ONCE`] places of the world (xz, m), where it is there.
+    /// The waves of `water` that samples `spacing` (m) apart can carry.
     #[cfg(feature = "rapier")]
-    pub(crate) fn samples_of(&self, water: Entity, places: &[Vec2]) -> Samples {
-        self.waters.get(water).map_or_else(|_| Samples::default(), |(entity, water)| samples(entity, water, places))
+    pub(crate) fn waves_carried_by(&self, water: Entity, spacing: f32, carried: &mut WaveField) {
+        if let Ok((_, water)) = self.waters.get(water) {
+            water.waves.carried_by(spacing, carried);
+        }
+    }
+
+    /// The `water` with these of its `waves` at up to [`AT_ONCE`] places of the world (xz, m), where it is there.
+    #[cfg(feature = "rapier")]
+    pub(crate) fn samples_of(&self, water: Entity, waves: &WaveField, places: &[Vec2]) -> Samples {
+        let Ok((entity, water)) = self.waters.get(water) else { return default() };
+        samples(entity, water, waves, places)
     }
 }
 
@@ -104,9 +114,9 @@ struct Found {
     depth: f32,
 }
 
-/// The surface of `water` at up to [`AT_ONCE`] local `places` of its rectangle, where that is not dry.
-fn find(water: &ResolvedWater, places: &[Vec2]) -> [Option<Found>; AT_ONCE] {
-    let particles = water.particles(places);
+/// The surface of `water` with these `waves` at up to [`AT_ONCE`] local `places` of its rectangle, where that is not dry.
+fn find(water: &ResolvedWater, waves: &WaveField, places: &[Vec2]) -> [Option<Found>; AT_ONCE] {
+    let particles = water.particles_of(waves, places);
     std::array::from_fn(|index| {
         let (place, particle) = (*places.get(index)?, particles[index]);
         let elevation = water.elevation(&particle);
@@ -115,15 +125,15 @@ fn find(water: &ResolvedWater, places: &[Vec2]) -> [Option<Found>; AT_ONCE] {
     })
 }
 
-/// `water` at up to [`AT_ONCE`] places of the world (xz, m), where it is there.
-fn samples(entity: Entity, water: &ResolvedWater, places: &[Vec2]) -> Samples {
+/// `water` with these `waves` at up to [`AT_ONCE`] places of the world (xz, m), where it is there.
+fn samples(entity: Entity, water: &ResolvedWater, waves: &WaveField, places: &[Vec2]) -> Samples {
     let mut local = [Vec2::ZERO; AT_ONCE];
     let local = &mut local[..places.len()];
     local.iter_mut().zip(places).for_each(|(local, place)| *local = water.local_from_world.transform_point2(*place));
     if !local.iter().any(|place| water.covers(*place)) {
         return default();
     }
-    let found = find(water, local);
+    let found = find(water, waves, local);
     let mut samples = Samples::default();
     for ((sample, found), place) in samples.iter_mut().zip(found).zip(local) {
         *sample = found.filter(|_| water.covers(*place)).map(|found| sample_of(entity, water, *place, &found));

@@ -33,7 +33,7 @@ impl WaterQuery<'_, '_> {
             .filter_map(|(entity, water)| {
                 let distance = meet(water, ray, max)?;
                 let position = ray.get_point(distance);
-                let surface = samples(entity, water, &[position.xz()])[0].take()?;
+                let surface = samples(entity, water, &water.waves, &[position.xz()])[0].take()?;
                 Some(WaterHit { distance, position, surface })
             })
             .min_by(|a, b| a.distance.total_cmp(&b.distance).then(a.surface.water.cmp(&b.surface.water)))

@@ -72,7 +72,7 @@ impl Body {
         let share = load.submerged_volume / self.hull.volume();
         load.entering = if share > self.submerged { 1.0 - self.submerged / share } else { 0.0 };
         self.submerged = share;
-        let inverse_inertia = if self.upright { Mat3::ZERO } else { self.inertia().inverse() };
+        let inverse_inertia = if self.upright { Mat3::ZERO } else { self.inertia().as_dmat3().inverse().as_mat3() };
         let inertia = Inertia { inverse_mass: Vec3::splat(self.mass.recip()), inverse_inertia };
         let weight = Wrench { force: Vec3::NEG_Y * (self.mass * GRAVITY), torque: Vec3::ZERO };
         let wrench = load.over_step(&self.motion, &inertia, weight, dt);

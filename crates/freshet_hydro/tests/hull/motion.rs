@@ -100,7 +100,8 @@ fn bodies_of_every_size_come_to_rest() {
             (100.0, 1.0, 60.0),
             (500.0, 1.0, 20.0),
             (900.0, 30.0, 20.0),
-            (5.0, 100.0, 20.0),
+            (5.0, 200.0, 20.0),
+            (900.0, 200.0, 60.0),
         ] {
             let hull = hull.clone().scaled(Vec3::splat(size)).expect("a hull");
             let mut body = Body::new(hull, density, 2.0 * size);
