@@ -4,3 +4,5 @@
 
 pub mod esri_ascii;
 pub mod flow_map;
+pub mod georeference;
+pub mod step;

@@ -1,0 +1,49 @@
+//! One instant of a flood.
+
+use freshet_hydro::grid::Grid;
+
+/// What a hydraulic model tells of each cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Quantity {
+    /// Depth of the water, m. 0 or no data where it is dry.
+    Depth,
+    /// Speed of the water, averaged over its depth, m/s.
+    Speed,
+    /// Elevation of the water's surface, m.
+    Level,
+    /// Velocity of the water to the east (u), m/s.
+    East,
+    /// Velocity of the water to the north (v), m/s.
+    North,
+}
+
+impl Quantity {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Depth, Self::Speed, Self::Level, Self::East, Self::North];
+}
+
+/// The state of a flood at one time. All of its rasters are of one shape; NaN marks cells without data.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Step {
+    /// Time since the beginning of the data, s.
+    pub time: f64,
+    rasters: [Option<Grid<f32>>; Quantity::ALL.len()],
+}
+
+impl Step {
+    /// A step that knows nothing yet.
+    pub fn new(time: f64) -> Self {
+        Self { time, rasters: Default::default() }
+    }
+
+    /// The step with one more raster, in place of what it had of that quantity.
+    pub fn with(mut self, quantity: Quantity, raster: Grid<f32>) -> Self {
+        self.rasters[quantity as usize] = Some(raster);
+        self
+    }
+
+    /// The raster of a quantity, if the model wrote it.
+    pub fn get(&self, quantity: Quantity) -> Option<&Grid<f32>> {
+        self.rasters[quantity as usize].as_ref()
+    }
+}
