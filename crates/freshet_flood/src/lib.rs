@@ -2,7 +2,15 @@
 //!
 //! Positions are those of [`freshet_hydro`]: metres from the centre of a raster, x to the east and z to the south.
 
+pub mod arrival;
+pub mod current;
 pub mod esri_ascii;
 pub mod flow_map;
 pub mod georeference;
+pub mod interpolation;
+pub mod maxima;
+mod neighbours;
 pub mod step;
+pub mod terrain;
+pub mod waterline;
+pub mod window;

@@ -1,6 +1,7 @@
 //! One instant of a flood.
 
 use freshet_hydro::grid::Grid;
+use glam::Vec2;
 
 /// What a hydraulic model tells of each cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -45,5 +46,18 @@ impl Step {
     /// The raster of a quantity, if the model wrote it.
     pub fn get(&self, quantity: Quantity) -> Option<&Grid<f32>> {
         self.rasters[quantity as usize].as_ref()
+    }
+
+    /// Speed of the water in m/s: as the model wrote it, or else the length of its velocity.
+    pub fn speed(&self) -> Option<Grid<f32>> {
+        let from_velocity = || self.velocity().map(|velocity| velocity.map(|velocity| velocity.length()));
+        self.get(Quantity::Speed).cloned().or_else(from_velocity)
+    }
+
+    /// Velocity of the water (east, south) in m/s, if the model wrote both of its parts.
+    pub fn velocity(&self) -> Option<Grid<Vec2>> {
+        let (east, north) = (self.get(Quantity::East)?, self.get(Quantity::North)?);
+        let mut north = north.values().iter();
+        Some(east.map(|east| Vec2::new(*east, -north.next().unwrap_or(&f32::NAN))))
     }
 }
