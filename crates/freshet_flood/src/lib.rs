@@ -2,7 +2,13 @@
 //!
 //! Positions are those of [`freshet_hydro`]: metres from the centre of a raster, x to the east and z to the south.
 
+pub mod duration;
 pub mod esri_ascii;
 pub mod flow_map;
 pub mod georeference;
+pub mod geotiff;
+pub mod incremental;
+pub mod raster;
 pub mod step;
+pub mod steps;
+pub mod text;
