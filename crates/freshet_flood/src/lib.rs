@@ -4,13 +4,19 @@
 
 pub mod arrival;
 pub mod current;
+pub mod duration;
 pub mod esri_ascii;
 pub mod flow_map;
 pub mod georeference;
+pub mod geotiff;
+pub mod incremental;
 pub mod interpolation;
 pub mod maxima;
 mod neighbours;
+pub mod raster;
 pub mod step;
+pub mod steps;
 pub mod terrain;
+pub mod text;
 pub mod waterline;
 pub mod window;

@@ -1,6 +1,7 @@
 //! The command `freshet-flood`: from the rasters of hydraulic models to what the water plugin plays.
 
 mod flow;
+mod info;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
@@ -17,11 +18,15 @@ struct Arguments {
 enum Command {
     /// Compute the steady flow of a river over a terrain and store it as a flow map.
     Flow(flow::Arguments),
+    /// Tell what a raster, an incremental file or a folder of rasters holds.
+    Info(info::Arguments),
 }
 
 fn main() -> Result<()> {
-    match Arguments::parse().command {
-        Command::Flow(arguments) => print!("{}", flow::run(&arguments)?),
-    }
+    let text = match Arguments::parse().command {
+        Command::Flow(arguments) => flow::run(&arguments)?,
+        Command::Info(arguments) => info::run(&arguments)?,
+    };
+    print!("{text}");
     Ok(())
 }

@@ -1,7 +1,11 @@
 //! One instant of a flood.
 
+use std::fmt;
+use std::str::FromStr;
+
 use freshet_hydro::grid::Grid;
 use glam::Vec2;
+use thiserror::Error;
 
 /// What a hydraulic model tells of each cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -21,6 +25,38 @@ pub enum Quantity {
 impl Quantity {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Depth, Self::Speed, Self::Level, Self::East, Self::North];
+
+    /// The word for it: `depth`, `speed`, `level`, `east` or `north`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Depth => "depth",
+            Self::Speed => "speed",
+            Self::Level => "level",
+            Self::East => "east",
+            Self::North => "north",
+        }
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// That a text is no quantity's name.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("expected depth, speed, level, east or north, found “{0}”")]
+pub struct QuantityError(pub String);
+
+impl FromStr for Quantity {
+    type Err = QuantityError;
+
+    /// The quantity of a name as [`Quantity::name`] gives it, in any case.
+    fn from_str(text: &str) -> Result<Self, QuantityError> {
+        let quantity = Self::ALL.into_iter().find(|quantity| quantity.name().eq_ignore_ascii_case(text));
+        quantity.ok_or_else(|| QuantityError(text.into()))
+    }
 }
 
 /// The state of a flood at one time. All of its rasters are of one shape; NaN marks cells without data.
