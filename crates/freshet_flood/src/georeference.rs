@@ -3,7 +3,7 @@
 use glam::{DVec2, UVec2};
 
 /// Place, cell size and shape of a raster on a map, by convention in metres of a projected coordinate system.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Georeference {
     /// South-western corner of the south-western cell: (easting, northing).
     pub corner: DVec2,

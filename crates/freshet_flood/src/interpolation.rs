@@ -24,6 +24,7 @@ use freshet_hydro::grid::Grid;
 use rayon::prelude::*;
 
 use crate::arrival::{ArrivalMap, ArrivalOptions};
+use crate::step::{Quantity, Step};
 use crate::waterline::wettings;
 
 /// Depth in metres of a cell at the share `share` (0…1) of the way between two steps where its depth is `before` and
@@ -120,6 +121,32 @@ impl Interval {
         let mut depth = cells.map(depth).collect::<Vec<_>>().into_iter();
         self.before.map(|_| depth.next().unwrap_or_default())
     }
+}
+
+/// Another quantity between two steps: blended where both steps have it and are wet, that of the one that is wet where a
+/// cell turns, and `dry` where the depth at that time, `depth`, is not above the threshold. None if one of the steps
+/// lacks it.
+pub fn quantity_at(
+    interval: &Interval,
+    (before, after): (&Step, &Step),
+    quantity: Quantity,
+    (time, depth): (f64, &Grid<f32>),
+    dry: f32,
+) -> Option<Grid<f32>> {
+    let (first, second) = (before.get(quantity)?, after.get(quantity)?);
+    let share = interval.share(time);
+    let is_wet = |grid: &Grid<f32>, place: usize| grid.values()[place] > interval.threshold;
+    let value = |place: usize| {
+        let (first, second) = (first.values()[place], second.values()[place]);
+        match (is_wet(&interval.before, place), is_wet(&interval.after, place)) {
+            _ if !is_wet(depth, place) => dry,
+            (true, true) => first + (second - first) * share,
+            (true, false) => first,
+            _ => second,
+        }
+    };
+    let values = (0..depth.values().len()).map(value).collect();
+    Grid::new(depth.size(), depth.cell_size(), values).ok()
 }
 
 /// The turn of a cell past whose bed the level goes at the share `level`, NaN if it tells nothing.

@@ -3,6 +3,7 @@
 //! Positions are those of [`freshet_hydro`]: metres from the centre of a raster, x to the east and z to the south.
 
 pub mod arrival;
+pub mod conversion;
 pub mod current;
 pub mod duration;
 pub mod esri_ascii;
@@ -11,6 +12,7 @@ pub mod georeference;
 pub mod geotiff;
 pub mod incremental;
 pub mod interpolation;
+pub mod maps;
 pub mod maxima;
 mod neighbours;
 pub mod raster;

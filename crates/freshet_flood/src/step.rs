@@ -8,7 +8,7 @@ use glam::Vec2;
 use thiserror::Error;
 
 /// What a hydraulic model tells of each cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Quantity {
     /// Depth of the water, m. 0 or no data where it is dry.
     Depth,

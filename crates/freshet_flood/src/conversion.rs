@@ -1,0 +1,412 @@
+//! From the steps of a model and its terrain to a folder of maps.
+//!
+//! The steps are read twice. The first time, maps of the whole flood are gathered and everything is checked: nothing is
+//! written before the last step was found good. The second time the steps themselves are written. Memory holds one step, the
+//! one before it, and the maps.
+
+use std::path::{Path, PathBuf};
+
+use freshet_hydro::grid::Grid;
+use glam::{DVec2, Vec2};
+use rayon::prelude::*;
+use thiserror::Error;
+
+use crate::arrival::{ArrivalBuilder, ArrivalError, ArrivalMap, ArrivalOptions};
+use crate::current::CurrentBuilder;
+use crate::maps::{Manifest, Map, MapsError, MapsWriter, Smoothing, Sources, VERSION, deepest};
+use crate::maxima::{Maxima, MaximaBuilder};
+use crate::raster::Raster;
+use crate::step::{Quantity, Step};
+use crate::steps::{Steps, StepsError};
+use crate::terrain::{NotCovered, Resampling, normals, on_raster};
+use crate::window::Window;
+
+/// What can be converted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Part {
+    /// Heights and normals of the terrain.
+    Terrain,
+    /// The arrival map.
+    Arrival,
+    /// Depths at every step.
+    Depth,
+    /// Speeds, velocities and levels at every step, where the model wrote them.
+    Velocity,
+    /// The flow map.
+    Flow,
+    /// Greatest depth, greatest speed, duration and hazard rating.
+    Maxima,
+}
+
+impl Part {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Terrain, Self::Arrival, Self::Depth, Self::Velocity, Self::Flow, Self::Maxima];
+
+    /// The word for it: `terrain`, `arrival`, `depth`, `velocity`, `flow` or `maxima`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Terrain => "terrain",
+            Self::Arrival => "arrival",
+            Self::Depth => "depth",
+            Self::Velocity => "velocity",
+            Self::Flow => "flow",
+            Self::Maxima => "maxima",
+        }
+    }
+}
+
+/// Which cells are converted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Crop {
+    /// The least rectangle with all that is ever wet, and one cell more on every side where there is one.
+    #[default]
+    Wet,
+    /// All that the model has.
+    All,
+    /// The cells that a rectangle on the map meets: (easting, northing) of its south-western and north-eastern corner.
+    Rectangle(DVec2, DVec2),
+}
+
+/// How a flood is converted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// What is converted. Default: everything.
+    pub parts: Vec<Part>,
+    /// How the arrival map is made, and which depth is wet.
+    pub arrival: ArrivalOptions,
+    /// Which cells are converted.
+    pub crop: Crop,
+    /// Depths err by at most half of this, m, above zero. Default: 0.001, which reaches to 65 m.
+    pub precision: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { parts: Part::ALL.to_vec(), arrival: ArrivalOptions::default(), crop: Crop::default(), precision: 1e-3 }
+    }
+}
+
+/// Why a flood cannot be converted.
+#[derive(Debug, Error)]
+pub enum ConversionError {
+    /// A step cannot be read.
+    #[error(transparent)]
+    Steps(#[from] StepsError),
+    /// The steps do not make an arrival map.
+    #[error("{}: {source}", .path.display())]
+    Arrival {
+        /// The folder or file of the steps.
+        path: PathBuf,
+        /// What is wrong.
+        source: ArrivalError,
+    },
+    /// The terrain lies elsewhere.
+    #[error(transparent)]
+    NotCovered(#[from] NotCovered),
+    /// There is only one step.
+    #[error("{}: expected at least two steps, found one: nothing moves", .0.display())]
+    OneStep(PathBuf),
+    /// Nothing is wet.
+    #[error("{}: no cell of any step is deeper than {threshold} m: there is no flood", .path.display())]
+    AllDry {
+        /// The folder or file of the steps.
+        path: PathBuf,
+        /// Depth above which a cell would be wet, m.
+        threshold: f32,
+    },
+    /// The model wrote levels but no depths, and there is no terrain to take from them.
+    #[error("{}: depths of steps that only tell levels need the terrain", .0.display())]
+    NoTerrain(PathBuf),
+    /// The rectangle to convert meets no cell.
+    #[error("the rectangle to crop to lies outside the steps")]
+    Outside,
+    /// The precision is no length.
+    #[error("the precision must be a finite number of metres above zero, not {0}")]
+    Precision(f64),
+    /// Pixels of 16 bits do not reach so deep.
+    #[error("a depth of {depth} m needs a precision of {needed:.4} m or coarser, and no finer threshold")]
+    TooDeep {
+        /// The greatest depth, m.
+        depth: f32,
+        /// The finest precision that reaches it, m.
+        needed: f64,
+    },
+    /// The steps are not the same as when they were read first.
+    #[error("{}: the steps changed while they were read", .0.display())]
+    Changed(PathBuf),
+    /// The maps cannot be written.
+    #[error(transparent)]
+    Maps(#[from] MapsError),
+}
+
+/// How far a conversion is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// So many steps were read the first time.
+    Read(usize),
+    /// The maps are being made; there are so many steps.
+    Maps(usize),
+    /// So many steps were written.
+    Written(usize),
+}
+
+/// What was converted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Time (s), volume (m³) and wet area (m²) of each step, over all cells of the model.
+    pub steps: Vec<Amount>,
+    /// The cells that were converted, of those of the model.
+    pub window: Window,
+    /// The cells that are ever wet.
+    pub wet_cells: usize,
+    /// The latest arrival, s since the first step.
+    pub last_arrival: f32,
+    /// How the terrain was brought onto the cells of the steps.
+    pub terrain: Option<Resampling>,
+    /// Bytes of all files.
+    pub bytes: u64,
+}
+
+/// How much water there is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Amount {
+    /// Time since the beginning of the data, s.
+    pub time: f64,
+    /// Volume, m³.
+    pub volume: f64,
+    /// Wet area, m².
+    pub area: f64,
+}
+
+impl Amount {
+    fn of(time: f64, depth: &Grid<f32>, threshold: f32) -> Self {
+        // Row by row, so that the sum is the same for any number of threads.
+        let rows = depth.values().par_chunks(depth.size().x as usize).map(|row| {
+            let sum: f64 = row.iter().filter(|depth| **depth > 0.0).map(|depth| f64::from(*depth)).sum();
+            (sum, row.iter().filter(|depth| **depth > threshold).count())
+        });
+        let rows: Vec<(f64, usize)> = rows.collect();
+        let cell = f64::from(depth.cell_size()).powi(2);
+        let (sum, count) = rows.iter().fold((0.0, 0), |(sum, count), row| (sum + row.0, count + row.1));
+        Self { time, volume: sum * cell, area: count as f64 * cell }
+    }
+}
+
+/// Converts `steps`, over `terrain` (with its name) if it is known, into a folder at `place`, which appears whole or not at
+/// all. `progress` is called after every step.
+///
+/// # Errors
+/// [`ConversionError`]; then nothing is written, and what was at `place` stays.
+pub fn convert(
+    steps: &Steps,
+    terrain: Option<(&str, &Raster)>,
+    options: &Options,
+    place: &Path,
+    mut progress: impl FnMut(Progress),
+) -> Result<Summary, ConversionError> {
+    if !(options.precision.is_finite() && options.precision > 0.0) {
+        return Err(ConversionError::Precision(options.precision));
+    }
+    let source = Source::new(steps, terrain)?;
+    let maps = Gathered::read(&source, options, &mut progress)?;
+    progress(Progress::Maps(maps.amounts.len()));
+    let mut writer = MapsWriter::new(place, manifest(&source, &maps, options))?;
+    write_maps(&mut writer, &source, &maps, &options.parts)?;
+    write_steps(&mut writer, &source, &maps, &options.parts, &mut progress)?;
+    Ok(Summary {
+        window: maps.window,
+        wet_cells: maps.arrival.after.values().iter().filter(|after| !after.is_nan()).count(),
+        last_arrival: maps.arrival.last().unwrap_or_default(),
+        terrain: source.bed.map(|(.., resampling)| resampling),
+        bytes: writer.finish()?,
+        steps: maps.amounts,
+    })
+}
+
+/// Steps and the terrain under them.
+struct Source<'a> {
+    steps: &'a Steps,
+    /// Name, elevations on the cells of the steps, and how they came there.
+    bed: Option<(&'a str, Grid<f32>, Resampling)>,
+}
+
+impl<'a> Source<'a> {
+    fn new(steps: &'a Steps, terrain: Option<(&'a str, &Raster)>) -> Result<Self, ConversionError> {
+        let bed = match terrain {
+            None => None,
+            Some((name, terrain)) => {
+                let (grid, how) = on_raster(&terrain.grid, &terrain.georeference, &steps.georeference())?;
+                Some((name, grid, how))
+            }
+        };
+        Ok(Self { steps, bed })
+    }
+
+    fn path(&self) -> PathBuf {
+        self.steps.path().into()
+    }
+
+    /// The steps, with depths.
+    fn iter(&self) -> impl Iterator<Item = Result<Step, ConversionError>> {
+        self.steps.iter().map(|step| self.with_depth(step?))
+    }
+
+    /// The step with the depth of its level over the terrain, if it has none.
+    fn with_depth(&self, step: Step) -> Result<Step, ConversionError> {
+        if step.get(Quantity::Depth).is_some() {
+            return Ok(step);
+        }
+        let Some(level) = step.get(Quantity::Level) else { return Ok(step) };
+        let (_, bed, _) = self.bed.as_ref().ok_or_else(|| ConversionError::NoTerrain(self.path()))?;
+        let mut depth = level.clone();
+        for (depth, bed) in depth.values_mut().iter_mut().zip(bed.values()) {
+            *depth = (*depth - bed).max(0.0);
+        }
+        Ok(step.with(Quantity::Depth, depth))
+    }
+}
+
+/// What the first reading tells.
+struct Gathered {
+    arrival: ArrivalMap,
+    maxima: Maxima,
+    current: Grid<Vec2>,
+    amounts: Vec<Amount>,
+    window: Window,
+}
+
+impl Gathered {
+    fn read(
+        source: &Source,
+        options: &Options,
+        progress: &mut impl FnMut(Progress),
+    ) -> Result<Self, ConversionError> {
+        let wrong = |error| ConversionError::Arrival { path: source.path(), source: error };
+        let threshold = options.arrival.threshold;
+        let mut arrival = ArrivalBuilder::new(options.arrival).map_err(wrong)?;
+        let mut maxima = MaximaBuilder::new(threshold);
+        let mut current = CurrentBuilder::new(threshold);
+        let mut amounts = Vec::new();
+        for step in source.iter() {
+            let step = step?;
+            arrival.add(&step).map_err(wrong)?;
+            maxima.add(&step);
+            current.add(&step);
+            amounts.extend(step.get(Quantity::Depth).map(|depth| Amount::of(step.time, depth, threshold)));
+            progress(Progress::Read(amounts.len()));
+        }
+        let arrival = arrival.finish().map_err(wrong)?;
+        let all_dry = || ConversionError::AllDry { path: source.path(), threshold };
+        let wet = Window::of_cells(&arrival.after, |after| !after.is_nan()).ok_or_else(all_dry)?;
+        if amounts.len() < 2 {
+            return Err(ConversionError::OneStep(source.path()));
+        }
+        let georeference = source.steps.georeference();
+        let window = match options.crop {
+            Crop::Wet => wet.grown(1, georeference.size),
+            Crop::All => Window::all(georeference.size),
+            Crop::Rectangle(from, to) => {
+                Window::of_map(&georeference, from, to).ok_or(ConversionError::Outside)?
+            }
+        };
+        let maxima = maxima.finish(&arrival).ok_or_else(all_dry)?;
+        let current = current.finish(&arrival, &maxima.depth);
+        check_depths(&maxima.depth, options)?;
+        Ok(Self { arrival, maxima, current, amounts, window })
+    }
+}
+
+fn check_depths(depths: &Grid<f32>, options: &Options) -> Result<(), ConversionError> {
+    let depth = depths.values().iter().copied().fold(0.0, f32::max);
+    if f64::from(depth) <= deepest(options.precision, options.arrival.threshold) {
+        return Ok(());
+    }
+    Err(ConversionError::TooDeep { depth, needed: f64::from(depth) / (f64::from(u16::MAX) - 0.5) })
+}
+
+fn manifest(source: &Source, maps: &Gathered, options: &Options) -> Manifest {
+    let ArrivalOptions { radius, threshold, level_share } = options.arrival;
+    let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let sources = Sources {
+        steps: name(source.steps.path()),
+        terrain: source.bed.as_ref().map(|(name, _, resampling)| ((*name).into(), *resampling)),
+    };
+    Manifest {
+        version: VERSION,
+        georeference: maps.window.georeference(&source.steps.georeference()),
+        window: maps.window,
+        threshold,
+        precision: options.precision,
+        arrival: Smoothing { radius, level_share },
+        sources,
+        maps: Default::default(),
+        flow: None,
+        normals: None,
+        steps: Vec::new(),
+    }
+}
+
+fn write_maps(
+    writer: &mut MapsWriter,
+    source: &Source,
+    maps: &Gathered,
+    parts: &[Part],
+) -> Result<(), ConversionError> {
+    let window = maps.window;
+    if let Some((_, bed, _)) = source.bed.as_ref().filter(|_| parts.contains(&Part::Terrain)) {
+        writer.add_map(Map::Terrain, &window.of(bed))?;
+        writer.add_normals(&window.of(&normals(bed)))?;
+    }
+    if parts.contains(&Part::Arrival) {
+        writer.add_map(Map::Arrival, &window.of(&maps.arrival.after))?;
+    }
+    if parts.contains(&Part::Flow) {
+        writer.add_flow(window.of(&maps.current))?;
+    }
+    if parts.contains(&Part::Maxima) {
+        let Maxima { depth, speed, duration, hazard } = &maps.maxima;
+        writer.add_map(Map::MaximumDepth, &window.of(depth))?;
+        if let Some(speed) = speed {
+            writer.add_map(Map::MaximumSpeed, &window.of(speed))?;
+        }
+        writer.add_map(Map::Duration, &window.of(duration))?;
+        writer.add_map(Map::Hazard, &window.of(hazard))?;
+    }
+    Ok(())
+}
+
+fn write_steps(
+    writer: &mut MapsWriter,
+    source: &Source,
+    maps: &Gathered,
+    parts: &[Part],
+    progress: &mut impl FnMut(Progress),
+) -> Result<(), ConversionError> {
+    let wanted = |quantity: &Quantity| match quantity {
+        Quantity::Depth => parts.contains(&Part::Depth),
+        _ => parts.contains(&Part::Velocity),
+    };
+    let quantities: Vec<Quantity> = Quantity::ALL.into_iter().filter(wanted).collect();
+    let times: Vec<f64> = maps.amounts.iter().map(|amount| amount.time).collect();
+    let changed = || ConversionError::Changed(source.path());
+    let mut written = 0;
+    // Times belong to the flood also if no step is written.
+    if quantities.is_empty() {
+        return times.into_iter().try_for_each(|time| Ok(writer.add_step(&Step::new(time), &[])?));
+    }
+    for step in source.iter() {
+        let step = step?;
+        let depth = step.get(Quantity::Depth).filter(|_| times.get(written) == Some(&step.time));
+        let is_same = depth.is_some_and(|depth| depth.size() == maps.arrival.after.size());
+        if !is_same {
+            return Err(changed());
+        }
+        let cut = quantities.iter().filter_map(|quantity| Some((*quantity, maps.window.of(step.get(*quantity)?))));
+        let cut = cut.fold(Step::new(step.time), |cut, (quantity, grid)| cut.with(quantity, grid));
+        writer.add_step(&cut, &quantities)?;
+        written += 1;
+        progress(Progress::Written(written));
+    }
+    if written == times.len() { Ok(()) } else { Err(changed()) }
+}
