@@ -73,6 +73,23 @@ pub enum Fault {
     Parse(#[from] ParseError),
 }
 
+/// Where a word stands.
+#[derive(Clone, Copy)]
+pub(crate) struct Place {
+    /// The line, counted from 1.
+    pub(crate) line: usize,
+    /// The byte of the line, counted from 1.
+    pub(crate) column: usize,
+}
+
+impl Place {
+    /// That something else should stand here.
+    pub(crate) fn unexpected(self, expected: impl Into<String>, found: impl Into<String>) -> Fault {
+        let Self { line, column } = self;
+        Fault::Parse(ParseError { line, column, expected: expected.into(), found: found.into() })
+    }
+}
+
 /// A word of a file for a message, shortened and printable.
 pub(crate) fn quote(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(word);

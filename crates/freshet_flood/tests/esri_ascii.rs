@@ -78,13 +78,25 @@ fn errors_name_line_column_expectation_and_finding() {
             format!("{HEADER}1 2 3\n4 5"),
             "line 7, column 4: expected 6 values (3 columns × 2 rows), found the end of the file after 5",
         ),
-        (format!("{HEADER}1 2 3\n4 5 6\n7"), "line 8, column 1: expected the end of the file after 6 values (3 × 2), found “7”"),
+        (
+            format!("{HEADER}1 2 3\n4 5 6\n7"),
+            "line 8, column 1: expected the end of the file after 6 values (3 × 2), found “7”",
+        ),
         (format!("{HEADER}1 2 x3\n4 5 6"), "line 6, column 5: expected a number, found “x3”"),
         (format!("{HEADER}1 2 1e99"), "line 6, column 5: expected a finite number, found “1e99”"),
         (format!("{HEADER}0 1.000,5"), "line 6, column 3: expected a number, found “1.000,5”"),
-        (HEADER.replace("ncols 3", "ncols 0"), "line 1, column 7: expected a whole number from 1 to 4294967295, found “0”"),
-        (HEADER.replace("nrows 2", "nrows 2.5"), "line 2, column 7: expected a whole number from 1 to 4294967295, found “2.5”"),
-        (HEADER.replace("nrows 2", "nrows -2"), "line 2, column 7: expected a whole number from 1 to 4294967295, found “-2”"),
+        (
+            HEADER.replace("ncols 3", "ncols 0"),
+            "line 1, column 7: expected a whole number from 1 to 4294967295, found “0”",
+        ),
+        (
+            HEADER.replace("nrows 2", "nrows 2.5"),
+            "line 2, column 7: expected a whole number from 1 to 4294967295, found “2.5”",
+        ),
+        (
+            HEADER.replace("nrows 2", "nrows -2"),
+            "line 2, column 7: expected a whole number from 1 to 4294967295, found “-2”",
+        ),
         (
             HEADER.replace("nrows 2\n", ""),
             "line 5, column 1: expected the header to give nrows, found none before the first value",
@@ -195,7 +207,10 @@ fn files_are_named_in_errors_and_written_back() {
     assert!(error.to_string().contains("no_such.asc"));
     std::fs::write(&path, "ncols x").unwrap();
     let error = EsriGrid::read(&path).unwrap_err().to_string();
-    assert!(error.ends_with("round_trip.asc, line 1, column 7: expected a finite number for ncols, found “x”"), "{error}");
+    assert!(
+        error.ends_with("round_trip.asc, line 1, column 7: expected a finite number for ncols, found “x”"),
+        "{error}"
+    );
     assert!(EsriGrid::read(folder).is_err());
 }
 

@@ -6,7 +6,7 @@ use glam::{DVec2, UVec2};
 
 use super::USUAL_NO_DATA;
 use crate::georeference::Georeference;
-use crate::text::{Fault, ParseError, Words, float, quote};
+use crate::text::{Fault, Place, Words, float, quote};
 
 /// The keys, in lower case.
 const KEYS: [&str; 10] =
@@ -53,8 +53,7 @@ impl Header {
 
 /// One key of the header with its value.
 struct Entry {
-    line: usize,
-    column: usize,
+    place: Place,
     word: Vec<u8>,
     value: f64,
 }
@@ -67,8 +66,7 @@ impl Entry {
     }
 
     fn unexpected(&self, expected: impl Into<String>) -> Fault {
-        let Self { line, column, .. } = *self;
-        Fault::Parse(ParseError { line, column, expected: expected.into(), found: quote(&self.word) })
+        self.place.unexpected(expected, quote(&self.word))
     }
 }
 
@@ -101,7 +99,7 @@ impl Entries {
         let value = float::<f64>(&word)
             .filter(|value| value.is_finite() || key == "nodata_value")
             .ok_or_else(|| words.unexpected_word(expected()))?;
-        Ok(Entry { line: words.line(), column: words.column(), word, value })
+        Ok(Entry { place: words.place(), word, value })
     }
 
     fn get(&self, key: &str) -> Option<&Entry> {

@@ -2,20 +2,20 @@
 
 use std::io::Read;
 
-use crate::text::{Fault, ParseError, Words, float, quote};
+use crate::text::{Fault, Place, Words, float, quote};
 
 /// More words than any line of a header has.
 const MOST_WORDS: usize = 100;
 
 /// A line with at least one word.
 pub(super) struct Line {
+    place: Place,
     words: Vec<Word>,
 }
 
 pub(super) struct Word {
     pub(super) text: String,
-    line: usize,
-    column: usize,
+    place: Place,
 }
 
 impl Line {
@@ -24,16 +24,16 @@ impl Line {
         if words.peek()?.is_none() {
             return Err(words.unexpected(expected, "the end of the file"));
         }
-        let line = words.line();
+        let place = words.place();
         let mut read = Vec::new();
-        while let Some(word) = words.next_on(line)? {
+        while let Some(word) = words.next_on(place.line)? {
             let text = String::from_utf8_lossy(word).into_owned();
-            read.push(Word { text, line, column: words.column() });
+            read.push(Word { text, place: words.place() });
             if read.len() > MOST_WORDS {
                 return Err(words.unexpected(expected, format!("a line of more than {MOST_WORDS} words")));
             }
         }
-        Ok(Self { words: read })
+        Ok(Self { place, words: read })
     }
 
     pub(super) fn words(&self) -> &[Word] {
@@ -57,19 +57,14 @@ impl Line {
 
     /// That the line should have been something else.
     pub(super) fn unexpected(&self, expected: impl Into<String>) -> Fault {
-        let [first, ..] = self.words.as_slice() else {
-            return Word { text: String::new(), line: 1, column: 1 }.unexpected(expected);
-        };
         let texts: Vec<&str> = self.words.iter().map(|word| word.text.as_str()).collect();
-        let found = quote(texts.join(" ").as_bytes());
-        Fault::Parse(ParseError { line: first.line, column: first.column, expected: expected.into(), found })
+        self.place.unexpected(expected, quote(texts.join(" ").as_bytes()))
     }
 }
 
 impl Word {
     /// That another word should stand here.
     pub(super) fn unexpected(&self, expected: impl Into<String>) -> Fault {
-        let Self { line, column, .. } = *self;
-        Fault::Parse(ParseError { line, column, expected: expected.into(), found: quote(self.text.as_bytes()) })
+        self.place.unexpected(expected, quote(self.text.as_bytes()))
     }
 }

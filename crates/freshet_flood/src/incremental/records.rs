@@ -7,7 +7,7 @@ use glam::UVec2;
 
 use super::header::Header;
 use crate::step::{Quantity, Step};
-use crate::text::{Fault, ParseError, Words, float, natural};
+use crate::text::{Fault, Place, Words, float, natural};
 
 /// An incremental file that is read from a stream: an iterator over its steps, one for each time, with all quantities
 /// that had a record until then. It ends after the first error. Memory holds one step.
@@ -22,8 +22,11 @@ pub struct Incremental<R> {
 /// The beginning of a record.
 #[derive(Clone, Copy)]
 struct Record {
+    /// s.
     time: f64,
+    /// Column of the quantity in the table of classes, from 0.
     column: usize,
+    place: Place,
 }
 
 /// A line below the header.
@@ -35,9 +38,7 @@ enum Entry {
 /// What a cell becomes: column, row and class, as they stand in the file.
 struct Cell {
     numbers: [u32; 3],
-    /// Where each of them stands.
-    line: usize,
-    columns: [usize; 3],
+    places: [Place; 3],
 }
 
 impl<R: Read> Incremental<R> {
@@ -53,8 +54,8 @@ impl<R: Read> Incremental<R> {
         let Some(Entry::Record(first)) = first else {
             let expected = "a record (hours, 0, quantity)";
             return Err(match first {
-                None => words.unexpected(expected, "the end of the file"),
-                Some(_) => words.unexpected(expected, "a cell"),
+                Some(Entry::Cell(cell)) => cell.places[0].unexpected(expected, "a cell"),
+                _ => words.unexpected(expected, "the end of the file"),
             });
         };
         Ok(Self { words, header, rasters: Default::default(), record: Some(first) })
@@ -71,7 +72,7 @@ impl<R: Read> Incremental<R> {
         while let Some(next) = self.read_cells(record)? {
             if next.time < time {
                 let [expected, found] = [time, next.time].map(|seconds| seconds / self.header.time_unit);
-                return Err(self.words.unexpected(format!("a time from {expected}"), format!("{found}")));
+                return Err(next.place.unexpected(format!("a time from {expected}"), found.to_string()));
             }
             if next.time > time {
                 self.record = Some(next);
@@ -140,25 +141,25 @@ fn read_entry<R: Read>(words: &mut Words<R>, header: &Header) -> Result<Option<E
     if whole.is_none() && hours.is_none() {
         return Err(words.unexpected_word("a cell (column, row, class) or a record (hours, 0, quantity)"));
     }
-    let line = words.line();
-    let mut columns = [words.column(), 0, 0];
+    let mut places = [words.place(); 3];
+    let line = places[0].line;
     let mut numbers = [whole.unwrap_or_default(), 0, 0];
     for place in 1..3 {
         numbers[place] = match words.next_on(line)?.map(natural) {
             Some(Some(number)) => number,
             Some(None) => return Err(words.unexpected_word("a whole number")),
             None => {
-                let found = format!("the end of line {line} after {place}");
-                return Err(words.unexpected("three or four numbers on a line", found));
+                let found = format!("{place}");
+                return Err(places[0].unexpected("three or four numbers on a line", found));
             }
         };
-        columns[place] = words.column();
+        places[place] = words.place();
     }
     let has_domain = words.next_on(line)?.is_some();
     if has_domain && words.next_on(line)?.is_some() {
         return Err(words.unexpected_word("at most four numbers on a line"));
     }
-    let cell = Cell { numbers, line, columns };
+    let cell = Cell { numbers, places };
     if !has_domain && numbers[1] > 0 && whole.is_some() {
         return Ok(Some(Entry::Cell(cell)));
     }
@@ -175,16 +176,8 @@ impl Cell {
         let time = hours * header.time_unit;
         match column {
             None => Err(self.unexpected(2, "a quantity", 1, count)),
-            Some(_) if !time.is_finite() => {
-                let (line, column) = (self.line, self.columns[0]);
-                Err(Fault::Parse(ParseError {
-                    line,
-                    column,
-                    expected: "a finite time".into(),
-                    found: hours.to_string(),
-                }))
-            }
-            Some(column) => Ok(Record { time, column }),
+            Some(_) if !time.is_finite() => Err(self.places[0].unexpected("a finite time", hours.to_string())),
+            Some(column) => Ok(Record { time, column, place: self.places[0] }),
         }
     }
 
@@ -204,8 +197,6 @@ impl Cell {
     /// That the number in this place is out of its range.
     #[cold]
     fn unexpected(&self, place: usize, what: &str, least: usize, most: usize) -> Fault {
-        let (line, column) = (self.line, self.columns[place]);
-        let (expected, found) = (format!("{what} from {least} to {most}"), self.numbers[place].to_string());
-        Fault::Parse(ParseError { line, column, expected, found })
+        self.places[place].unexpected(format!("{what} from {least} to {most}"), self.numbers[place].to_string())
     }
 }

@@ -7,7 +7,7 @@ use super::StepsError;
 use super::folder::Files;
 use super::names::{Name, Number};
 use crate::duration;
-use crate::text::{self, Fault, ParseError, TextError, quote};
+use crate::text::{self, Fault, Place, TextError, quote};
 
 /// Times by names of files or numbers of steps.
 pub(super) struct Table {
@@ -37,8 +37,8 @@ impl Table {
                 // Titles.
                 Err(_) if index == 0 => {}
                 Err((column, expected)) => {
-                    let (line, expected, found) = (index + 1, expected.into(), quote(line.as_bytes()));
-                    return Err(error(Fault::Parse(ParseError { line, column, expected, found })));
+                    let place = Place { line: index + 1, column };
+                    return Err(error(place.unexpected(expected, quote(line.as_bytes()))));
                 }
             }
         }

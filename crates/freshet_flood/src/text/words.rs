@@ -3,7 +3,7 @@
 use std::io::{self, ErrorKind, Read};
 use std::ops::Range;
 
-use super::{Fault, ParseError, quote};
+use super::{Fault, Place, quote};
 
 /// How much of a stream is held at once, in bytes; also the longest word there can be.
 const BUFFER: usize = 1 << 17;
@@ -78,15 +78,16 @@ impl<R: Read> Words<R> {
         self.line.max(1)
     }
 
-    /// The byte of its line where the last word that was found starts, counted from 1.
-    pub(crate) fn column(&self) -> usize {
-        self.word.start.saturating_add_signed(1 - self.line_start)
+    /// Where the last word that was found starts.
+    #[inline]
+    pub(crate) fn place(&self) -> Place {
+        // Lines that began before the buffer have a start below zero.
+        Place { line: self.line(), column: self.word.start.saturating_add_signed(1 - self.line_start) }
     }
 
     /// That something else should stand where the last word was found.
     pub(crate) fn unexpected(&self, expected: impl Into<String>, found: impl Into<String>) -> Fault {
-        let (line, column) = (self.line(), self.column());
-        Fault::Parse(ParseError { line, column, expected: expected.into(), found: found.into() })
+        self.place().unexpected(expected, found)
     }
 
     /// That another word should stand in the place of the last one found.
