@@ -1,9 +1,14 @@
 //! The command `freshet-flood`: from the rasters of hydraulic models to what the water plugin plays.
 
+mod convert;
 mod flow;
+mod grid;
 mod info;
+mod source;
 
-use anyhow::Result;
+use std::io::{self, Write};
+
+use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
 
 /// Prepares terrain and flood rasters for real-time water.
@@ -18,6 +23,10 @@ struct Arguments {
 enum Command {
     /// Compute the steady flow of a river over a terrain and store it as a flow map.
     Flow(flow::Arguments),
+    /// Convert a flood into maps to be played: arrival, depth at every step, current, terrain, maxima.
+    Convert(convert::Arguments),
+    /// Print a flood at one time as an ESRI ASCII grid.
+    Grid(grid::Arguments),
     /// Tell what a raster, an incremental file or a folder of rasters holds.
     Info(info::Arguments),
 }
@@ -25,8 +34,13 @@ enum Command {
 fn main() -> Result<()> {
     let text = match Arguments::parse().command {
         Command::Flow(arguments) => flow::run(&arguments)?,
+        Command::Convert(arguments) => convert::run(&arguments)?,
+        Command::Grid(arguments) => grid::run(&arguments)?,
         Command::Info(arguments) => info::run(&arguments)?,
     };
-    print!("{text}");
-    Ok(())
+    match io::stdout().lock().write_all(text.as_bytes()) {
+        // Whoever reads may have seen enough.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        written => written.context("the output cannot be written"),
+    }
 }
