@@ -74,8 +74,9 @@ fn spread(rises: &mut [f32], places: &[usize], size: UVec2, wets: impl Fn(&usize
 /// The mean of the known values around a cell.
 fn mean_around(values: &[f32], place: usize, size: UVec2) -> f32 {
     let known = around(place, size).map(|other| values[other]).filter(|value| !value.is_nan());
-    let (sum, count) = known.fold((0.0, 0_u8), |(sum, count), value| (sum + value, count + 1));
-    sum / f32::from(count)
+    // In f64 the sum of eight is exact for depths of a flood, so that a mirrored flood has the mirrored mean.
+    let (sum, count) = known.fold((0.0, 0_u8), |(sum, count), value| (sum + f64::from(value), count + 1));
+    (sum / f64::from(count)) as f32
 }
 
 /// Gives every pool that nothing was carried into its greatest depth as the rise.
