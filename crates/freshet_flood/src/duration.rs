@@ -24,8 +24,7 @@ pub struct DurationError(pub String);
 /// [`DurationError`] if there is no such number, or no such unit.
 pub fn seconds(text: &str) -> Result<f64, DurationError> {
     let text = text.trim();
-    let length = text.find(|letter: char| letter.is_alphabetic()).unwrap_or(text.len());
-    let (number, unit) = text.split_at(length);
+    let (number, unit) = text.split_at(text.trim_end_matches(char::is_alphabetic).len());
     let unit = unit.to_ascii_lowercase();
     UNITS
         .iter()

@@ -7,7 +7,7 @@ use freshet_hydro::grid::Grid;
 use thiserror::Error;
 
 /// What a hydraulic model tells of each cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Quantity {
     /// Depth of the water, m. 0 or no data where it is dry.
     Depth,

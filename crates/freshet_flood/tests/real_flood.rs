@@ -1,7 +1,5 @@
 //! The project's real flood in assets/flood, as an incremental file and as grids.
 
-#![expect(clippy::unwrap_used, reason = "a test ends where something is wrong")]
-
 use std::path::{Path, PathBuf};
 
 use freshet_flood::raster::Raster;

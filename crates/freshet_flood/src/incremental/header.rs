@@ -50,12 +50,13 @@ pub struct Header {
 
 /// Whether a file that begins with this word is an incremental file.
 pub(crate) fn is_first_word(word: &[u8]) -> bool {
-    let begins =
-        |beginning: &[u8]| word.get(..beginning.len()).is_some_and(|start| start.eq_ignore_ascii_case(beginning));
-    let is_keyword = [&b"MAIN"[..], b"DOMAIN", b"GRID", b"START", b"CLASSES"]
-        .iter()
-        .any(|keyword| word.eq_ignore_ascii_case(keyword));
-    is_keyword || begins(b"INC1") || begins(b"/*")
+    let keywords: [&[u8]; 5] = [b"MAIN", b"DOMAIN", b"GRID", b"START", b"CLASSES"];
+    is_sobek(word) || word.starts_with(b"/*") || keywords.iter().any(|keyword| word.eq_ignore_ascii_case(keyword))
+}
+
+/// Whether the word is that with which Sobek begins its files: `INC` and a version.
+fn is_sobek(word: &[u8]) -> bool {
+    word.get(..3).is_some_and(|start| start.eq_ignore_ascii_case(b"INC"))
 }
 
 /// What the lines of a header tell, as far as they are read.
@@ -102,6 +103,7 @@ impl Draft {
         } else if line.begins(&["GRID"]) {
             self.grid = Some(read_grid(words)?);
         } else if line.begins(&["DOMAIN", "END"]) {
+            // What the domain is has been told above.
         } else if line.begins(&["DOMAIN"]) {
             Line::read(words, "number and name of the domain")?;
         } else if line.begins(&["START"]) {
@@ -113,7 +115,7 @@ impl Draft {
         } else if let ([_, _, unit], true) = (line.words(), line.begins(&["TIME", "UNIT"])) {
             let length = duration::seconds(&format!("1{}", unit.text));
             self.time_unit = length.map_err(|_| unit.unexpected("a unit from seconds to days"))?;
-        } else if line.words().iter().take(1).any(|word| is_sobek(&word.text)) {
+        } else if line.words().iter().take(1).any(|word| is_sobek(word.text.as_bytes())) {
             self.dialect = Dialect::Sobek;
         } else {
             return Ok(false);
@@ -126,10 +128,6 @@ impl Draft {
         let (cell_size, middle) = self.grid.ok_or_else(|| classes.unexpected("GRID before the classes"))?;
         Ok(Georeference { corner: middle - cell_size / 2.0, cell_size, size })
     }
-}
-
-fn is_sobek(word: &str) -> bool {
-    word.get(..3).is_some_and(|start| start.eq_ignore_ascii_case("INC"))
 }
 
 fn read_size<R: Read>(words: &mut Words<R>) -> Result<UVec2, Fault> {

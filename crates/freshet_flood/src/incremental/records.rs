@@ -144,16 +144,13 @@ fn read_entry<R: Read>(words: &mut Words<R>, header: &Header) -> Result<Option<E
     let mut places = [words.place(); 3];
     let line = places[0].line;
     let mut numbers = [whole.unwrap_or_default(), 0, 0];
-    for place in 1..3 {
-        numbers[place] = match words.next_on(line)?.map(natural) {
+    for count in 1..3 {
+        numbers[count] = match words.next_on(line)?.map(natural) {
             Some(Some(number)) => number,
             Some(None) => return Err(words.unexpected_word("a whole number")),
-            None => {
-                let found = format!("{place}");
-                return Err(places[0].unexpected("three or four numbers on a line", found));
-            }
+            None => return Err(places[0].unexpected("three or four numbers on a line", count.to_string())),
         };
-        places[place] = words.place();
+        places[count] = words.place();
     }
     let has_domain = words.next_on(line)?.is_some();
     if has_domain && words.next_on(line)?.is_some() {

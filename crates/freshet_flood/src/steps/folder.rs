@@ -21,7 +21,7 @@ pub(super) struct Folder {
 }
 
 /// The files of one step.
-pub(super) type Files = BTreeMap<usize, PathBuf>;
+pub(super) type Files = BTreeMap<Quantity, PathBuf>;
 
 /// A file with the step and the quantity that its name tells.
 struct Found {
@@ -47,7 +47,7 @@ impl Folder {
     pub(super) fn of_file(path: &Path, options: &Options) -> Result<Self, StepsError> {
         let name = Name::of_raster(path);
         let quantity = name.and_then(|name| name.quantity(&options.series)).unwrap_or(Quantity::Depth);
-        let files = Files::from([(quantity as usize, path.into())]);
+        let files = Files::from([(quantity, path.into())]);
         Self::new(path, vec![files], Vec::new(), options)
     }
 
@@ -88,7 +88,7 @@ impl Folder {
             // The file may be another one than when the folder was opened.
             let first = self.steps.first().and_then(|files| files.values().next()).unwrap_or(file);
             self.check(first, file, raster.georeference)?;
-            step = step.with(Quantity::ALL[quantity], raster.grid);
+            step = step.with(quantity, raster.grid);
         }
         Ok(step)
     }
@@ -143,7 +143,7 @@ fn sorted(found: Vec<Found>) -> Result<(Vec<Files>, Vec<PathBuf>), StepsError> {
             continue;
         };
         let files = steps.entry(name.numbers).or_default();
-        if let Some(first) = files.insert(quantity as usize, path.clone()) {
+        if let Some(first) = files.insert(quantity, path.clone()) {
             return Err(StepsError::Twice { first, second: path, quantity });
         }
     }

@@ -136,11 +136,11 @@ impl<R: Read> Words<R> {
             }
             self.rest.start += 1;
             if byte == b'\n' || byte == b'\r' {
-                // Both together are one line end.
-                let is_new =
-                    !(byte == b'\n' && self.last_blank == b'\r' && self.line_start == self.rest.start as isize - 1);
-                self.line += usize::from(is_new);
-                self.line_start = self.rest.start as isize;
+                let start = self.rest.start as isize;
+                // A carriage return and a line feed right behind it are one line end.
+                let is_second = byte == b'\n' && self.last_blank == b'\r' && start == self.line_start + 1;
+                self.line += usize::from(!is_second);
+                self.line_start = start;
             }
             self.last_blank = byte;
         }
