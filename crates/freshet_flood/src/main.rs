@@ -3,7 +3,10 @@
 mod flow;
 mod info;
 
-use anyhow::Result;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use anyhow::{Error, Result};
 use clap::{Parser, Subcommand};
 
 /// Prepares terrain and flood rasters for real-time water.
@@ -22,11 +25,26 @@ enum Command {
     Info(info::Arguments),
 }
 
-fn main() -> Result<()> {
-    let text = match Arguments::parse().command {
+fn main() -> ExitCode {
+    match run(Arguments::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("Error: {}", message(&error));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(command: Command) -> Result<()> {
+    let text = match command {
         Command::Flow(arguments) => flow::run(&arguments)?,
         Command::Info(arguments) => info::run(&arguments)?,
     };
-    print!("{text}");
-    Ok(())
+    Ok(io::stdout().write_all(text.as_bytes())?)
+}
+
+/// What went wrong and why, without causes that what stands before them repeats.
+fn message(error: &Error) -> String {
+    let causes = error.chain().skip(1).map(ToString::to_string);
+    causes.fold(error.to_string(), |text, cause| if text.contains(&cause) { text } else { text + ": " + &cause })
 }
