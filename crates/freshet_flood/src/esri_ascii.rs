@@ -10,9 +10,9 @@
 //! 7.19 7.27 7.40 …        rows from north to south, each from west to east
 //! ```
 //! Programs write many variants. Read here are: keys in any case and order, with leading blanks; the lower-left corner or
-//! the centre of the lower-left cell (`XLLCENTER`, `YLLCENTER`), mixed too; `DX`, alone or with an equal `DY`, for `CELLSIZE`; no
-//! `NODATA_VALUE` (then it is −9999); integers, decimals with point or comma, exponents, and `nan` for no data; line
-//! ends of any system and anywhere among the values; a UTF-8 byte-order mark; files packed by gzip.
+//! the centre of the lower-left cell (`XLLCENTER`, `YLLCENTER`), mixed too; `DX`, alone or with an equal `DY`, for
+//! `CELLSIZE`; no `NODATA_VALUE` (then it is −9999); integers, decimals with point or comma, exponents, and `nan` for no
+//! data; line ends of any system and anywhere among the values; a UTF-8 byte-order mark; files packed by gzip.
 
 mod header;
 mod parser;

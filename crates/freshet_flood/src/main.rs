@@ -7,8 +7,9 @@ mod info;
 mod source;
 
 use std::io::{self, Write};
+use std::process::ExitCode;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Error, Result};
 use clap::{Parser, Subcommand};
 
 /// Prepares terrain and flood rasters for real-time water.
@@ -31,8 +32,18 @@ enum Command {
     Info(info::Arguments),
 }
 
-fn main() -> Result<()> {
-    let text = match Arguments::parse().command {
+fn main() -> ExitCode {
+    match run(Arguments::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("Error: {}", message(&error));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(command: Command) -> Result<()> {
+    let text = match command {
         Command::Flow(arguments) => flow::run(&arguments)?,
         Command::Convert(arguments) => convert::run(&arguments)?,
         Command::Grid(arguments) => grid::run(&arguments)?,
@@ -43,4 +54,10 @@ fn main() -> Result<()> {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         written => written.context("the output cannot be written"),
     }
+}
+
+/// What went wrong and why, without causes that what stands before them repeats.
+fn message(error: &Error) -> String {
+    let causes = error.chain().skip(1).map(ToString::to_string);
+    causes.fold(error.to_string(), |text, cause| if text.contains(&cause) { text } else { text + ": " + &cause })
 }

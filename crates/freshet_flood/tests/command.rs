@@ -118,8 +118,25 @@ fn info_tells_what_a_raster_is() {
     assert_eq!(text, expected);
 }
 
-const INCREMENTAL: &str = "INC1.0\nMAIN DIMENSIONS MMAX NMAX\n2 1\nGRID DX DY X0 Y0\n2 2 11 21\nSTART TIME T0: 2011.01.01 00:00:00\n\
-    CLASSES OF INCREMENTAL FILE H C\n0.5 -999\n1 0.25\nENDCLASSES\n0.0 0 1 1\n1 1 1\n0.5 0 1 1\n1 1 2\n2 1 0\n0.5 0 2 1\n1 1 2\n";
+const INCREMENTAL: &str = "\
+INC1.0
+MAIN DIMENSIONS MMAX NMAX
+2 1
+GRID DX DY X0 Y0
+2 2 11 21
+START TIME T0: 2011.01.01 00:00:00
+CLASSES OF INCREMENTAL FILE H C
+0.5 -999
+1 0.25
+ENDCLASSES
+0.0 0 1 1
+1 1 1
+0.5 0 1 1
+1 1 2
+2 1 0
+0.5 0 2 1
+1 1 2
+";
 
 #[test]
 fn info_tells_what_an_incremental_file_is() {
@@ -174,6 +191,7 @@ fn info_fails_with_one_for_bad_data_and_two_for_bad_usage() {
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(code), "{message}");
         assert!(message.contains(expected), "{message}");
+        assert_eq!(message.matches("expected three or four").count(), usize::from(expected.contains("three or four")));
         assert!(output.stdout.is_empty());
     }
     let help = String::from_utf8(info(torn, &["--help"]).stdout).unwrap();

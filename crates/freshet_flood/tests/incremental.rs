@@ -170,62 +170,81 @@ fn a_class_that_the_quantity_does_not_have_is_no_data() {
 #[test]
 fn errors_name_line_column_expectation_and_finding() {
     let first = SOBEK.lines().count() + 1;
-    let (second, third) = (first + 1, first + 2);
+    let second = first + 1;
     let body = |records: &str| format!("{SOBEK}{records}");
-    for (text, expected) in [
-        (String::new(), "line 1, column 1: expected CLASSES OF INCREMENTAL FILE, found the end of the file".into()),
+    for (text, line, expected) in [
+        (String::new(), 1, "column 1: expected CLASSES OF INCREMENTAL FILE, found the end of the file"),
         (
             "hello world".into(),
-            "line 1, column 1: expected MAIN DIMENSIONS, GRID, DOMAIN, START TIME or CLASSES OF INCREMENTAL FILE, \
-             found “hello world”"
-                .into(),
+            1,
+            "column 1: expected MAIN DIMENSIONS, GRID, DOMAIN, START TIME or CLASSES OF INCREMENTAL FILE, \
+             found “hello world”",
         ),
-        (body(""), format!("line {first}, column 1: expected a record (hours, 0, quantity), found the end of the file")),
-        (body("1 1 1\n"), format!("line {first}, column 1: expected a record (hours, 0, quantity), found a cell")),
-        (body("0.0 0 6 1\n"), format!("line {first}, column 7: expected a quantity from 1 to 5, found 6")),
-        (body("0.0 0 0 1\n"), format!("line {first}, column 7: expected a quantity from 1 to 5, found 0")),
-        (body("1e400 0 1 1\n"), format!("line {first}, column 1: expected a finite time, found inf")),
-        (body("0.0 0 1 1\n4 1 1\n"), format!("line {second}, column 1: expected a column from 1 to 3, found 4")),
-        (body("0.0 0 1 1\n0 1 1\n"), format!("line {second}, column 1: expected a column from 1 to 3, found 0")),
-        (body("0.0 0 1 1\n1  3 1\n"), format!("line {second}, column 4: expected a row from 1 to 2, found 3")),
-        (body("0.0 0 1 1\n1 1 3\n"), format!("line {second}, column 5: expected a class from 0 to 2, found 3")),
-        (body("0.0 0 1 1\n1 1 -1\n"), format!("line {second}, column 5: expected a whole number, found “-1”")),
+        // The header.
         (
-            body("0.0 0 1 1\n1 x 1\n"),
-            format!("line {second}, column 3: expected a whole number, found “x”"),
+            SOBEK.replace("3   2\n", "3   x\n"),
+            5,
+            "column 29: expected two numbers of columns and rows, MMAX NMAX, found “x”",
         ),
         (
-            body("0.0 0 1 1\nend\n"),
-            format!(
-                "line {second}, column 1: expected a cell (column, row, class) or a record (hours, 0, quantity), found “end”"
-            ),
+            SOBEK.replace("3   2\n", "3\n"),
+            5,
+            "column 25: expected two numbers of columns and rows, MMAX NMAX, found “3”",
         ),
-        (
-            body("0.0 0 1 1\n1 1 1 1 1\n"),
-            format!("line {second}, column 9: expected at most four numbers on a line, found “1”"),
-        ),
-        // A last line that is torn off.
-        (
-            body("0.0 0 1 1\n1 1 1\n2 2"),
-            format!("line {third}, column 1: expected three or four numbers on a line, found 2"),
-        ),
-        (body("1.0 0 1 1\n0.5 0 1 1\n"), format!("line {second}, column 1: expected a time from 1, found 0.5")),
         (
             SOBEK.replace("4.00     4.00", "4.00     5.00"),
-            "line 7, column 25: expected DY equal to DX, for cells are squares here, found “4.00 5.00 12.00 22.00”".into(),
+            7,
+            "column 25: expected DY equal to DX, for cells are squares here, found “4.00 5.00 12.00 22.00”",
         ),
-        (SOBEK.replace("4.00     4.00", "0 0"), "line 7, column 25: expected a cell size above zero, found “0 0 12.00 22.00”".into()),
-        (SOBEK.replace("3   2\n", "3   x\n"), "line 5, column 29: expected two numbers of columns and rows, MMAX NMAX, found “x”".into()),
-        (SOBEK.replace("3   2\n", "3\n"), "line 5, column 25: expected two numbers of columns and rows, MMAX NMAX, found “3”".into()),
+        (
+            SOBEK.replace("4.00     4.00", "0 0"),
+            7,
+            "column 25: expected a cell size above zero, found “0 0 12.00 22.00”",
+        ),
         (
             SOBEK.replace("domain                        END", "MAIN DIMENSIONS MMAX NMAX\n3 2"),
-            "line 8, column 1: expected one domain, for files of several are not read here, found “MAIN DIMENSIONS MMAX NMAX”".into(),
+            8,
+            "column 1: expected one domain, for files of several are not read here, found “MAIN DIMENSIONS MMAX NMAX”",
         ),
-        (SOBEK.replace("GRID ", "/* "), "line 10, column 1: expected GRID before the classes, found “CLASSES OF INCREMENTAL FILE Waterdepth(m…”".into()),
-        (SOBEK.replace("     0.250", ""), "line 12, column 9: expected 4 class values, one for each quantity, found “0.100 -999 1.500 1.000 -999”".into()),
-        (SOBEK.replace("ENDCLASSES", ""), "line 14, column 1: expected a row of class values or ENDCLASSES, found the end of the file".into()),
+        (
+            SOBEK.replace("GRID ", "/* "),
+            10,
+            "column 1: expected GRID before the classes, found “CLASSES OF INCREMENTAL FILE Waterdepth(m…”",
+        ),
+        (
+            SOBEK.replace("     0.250", ""),
+            12,
+            "column 9: expected 4 class values, one for each quantity, found “0.100 -999 1.500 1.000 -999”",
+        ),
+        (
+            SOBEK.replace("ENDCLASSES", ""),
+            14,
+            "column 1: expected a row of class values or ENDCLASSES, found the end of the file",
+        ),
+        // Records.
+        (body(""), first, "column 1: expected a record (hours, 0, quantity), found the end of the file"),
+        (body("1 1 1\n"), first, "column 1: expected a record (hours, 0, quantity), found a cell"),
+        (body("0.0 0 6 1\n"), first, "column 7: expected a quantity from 1 to 5, found 6"),
+        (body("0.0 0 0 1\n"), first, "column 7: expected a quantity from 1 to 5, found 0"),
+        (body("1e400 0 1 1\n"), first, "column 1: expected a finite time, found inf"),
+        (body("1.0 0 1 1\n0.5 0 1 1\n"), second, "column 1: expected a time from 1, found 0.5"),
+        // Cells.
+        (body("0.0 0 1 1\n4 1 1\n"), second, "column 1: expected a column from 1 to 3, found 4"),
+        (body("0.0 0 1 1\n0 1 1\n"), second, "column 1: expected a column from 1 to 3, found 0"),
+        (body("0.0 0 1 1\n1  3 1\n"), second, "column 4: expected a row from 1 to 2, found 3"),
+        (body("0.0 0 1 1\n1 1 3\n"), second, "column 5: expected a class from 0 to 2, found 3"),
+        (body("0.0 0 1 1\n1 1 -1\n"), second, "column 5: expected a whole number, found “-1”"),
+        (body("0.0 0 1 1\n1 x 1\n"), second, "column 3: expected a whole number, found “x”"),
+        (
+            body("0.0 0 1 1\nend\n"),
+            second,
+            "column 1: expected a cell (column, row, class) or a record (hours, 0, quantity), found “end”",
+        ),
+        (body("0.0 0 1 1\n1 1 1 1 1\n"), second, "column 9: expected at most four numbers on a line, found “1”"),
+        // A last line that is torn off.
+        (body("0.0 0 1 1\n1 1 1\n2 2"), second + 1, "column 1: expected three or four numbers on a line, found 2"),
     ] {
-        assert_eq!(message(&text), expected, "{text:?}");
+        assert_eq!(message(&text), format!("line {line}, {expected}"), "{text:?}");
     }
 }
 
@@ -304,6 +323,9 @@ fn written(size: UVec2, flood: &Flood, dialect: Dialect) -> String {
     text
 }
 
+/// Words that a file could hold.
+const WORD: &str = "(?i)(main|grid|classes|endclasses|/\\*|inc1.0|-?[0-4](\\.[05])?|-999)";
+
 proptest! {
     #[test]
     fn what_either_program_writes_is_read_back((size, flood) in flood()) {
@@ -330,7 +352,7 @@ proptest! {
 
     #[test]
     fn misplaced_words_never_panic(
-        words in prop::collection::vec(("(?i)(main|grid|classes|endclasses|/\\*|inc1.0|-?[0-4](\\.[05])?|-999)", "[ \n]"), 0..60),
+        words in prop::collection::vec((WORD, "[ \n]"), 0..60),
         cut in 0_usize..500,
     ) {
         let noise: String = words.into_iter().map(|(word, blank)| word + &blank).collect();

@@ -306,12 +306,16 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(20))]
 
     #[test]
-    fn any_numbers_in_any_order_come_sorted(numbers in prop::collection::btree_set(0_u64..2000, 1..12), zeros in 0_usize..6) {
+    fn any_numbers_in_any_order_come_sorted(
+        numbers in prop::collection::btree_set(0_u64..2000, 1..12),
+        zeros in 0_usize..6,
+    ) {
         let path = folder("any_numbers");
         for number in &numbers {
             fs::write(path.join(format!("dm{number:0zeros$}.asc")), grid(number)).unwrap();
         }
-        let found: Vec<u64> = values(&path, Quantity::Depth, &every(1.0)).iter().map(|(_, value)| *value as u64).collect();
+        let found = values(&path, Quantity::Depth, &every(1.0));
+        let found: Vec<u64> = found.iter().map(|(_, value)| *value as u64).collect();
         prop_assert_eq!(found, numbers.into_iter().collect::<Vec<_>>());
     }
 }

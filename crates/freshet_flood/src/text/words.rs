@@ -24,6 +24,7 @@ pub(crate) struct Words<R> {
     line: usize,
     /// Where that line begins, measured from the start of the buffer: below zero once that has been dropped.
     line_start: isize,
+    /// The last byte between words, for line ends of two.
     last_blank: u8,
 }
 
