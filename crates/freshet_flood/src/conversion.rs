@@ -125,7 +125,7 @@ pub enum ConversionError {
     #[error("the precision must be a finite number of metres above zero, not {0}")]
     Precision(f64),
     /// Pixels of 16 bits do not reach so deep.
-    #[error("a depth of {depth} m needs a precision of {needed:.4} m or coarser, and no finer threshold")]
+    #[error("a depth of {depth} m needs a precision of {needed:.1e} m or coarser, and no finer threshold")]
     TooDeep {
         /// The greatest depth, m.
         depth: f32,
@@ -322,7 +322,8 @@ fn check_depths(depths: &Grid<f32>, options: &Options) -> Result<(), ConversionE
     if f64::from(depth) <= deepest(options.precision, options.arrival.threshold) {
         return Ok(());
     }
-    Err(ConversionError::TooDeep { depth, needed: f64::from(depth) / (f64::from(u16::MAX) - 0.5) })
+    // A little more, so that the number can be printed with two digits and taken as it stands.
+    Err(ConversionError::TooDeep { depth, needed: 1.06 * f64::from(depth) / f64::from(u16::MAX) })
 }
 
 fn manifest(source: &Source, maps: &Gathered, options: &Options) -> Manifest {

@@ -62,7 +62,7 @@ impl MapsWriter {
                 (scale, scale.values(grid.values(), is_empty, round))
             }
         };
-        picture::write(&self.folder.join(&file), grid.size(), &pixels)?;
+        picture::write(&self.folder.join(&file), grid.size(), &pixels).map_err(|error| self.placed(error))?;
         let Scale { scale, offset } = scale;
         self.manifest.maps.insert(map, Picture { file, scale, offset });
         Ok(())
@@ -74,7 +74,9 @@ impl MapsWriter {
     /// [`MapsError`] if the picture cannot be written.
     pub fn add_flow(&mut self, current: Grid<Vec2>) -> Result<(), MapsError> {
         let file = "flow.png".to_owned();
-        FlowMap::new(current, None).write(self.folder.join(&file))?;
+        let bytes = FlowMap::new(current, None).encode()?;
+        let path = self.folder.join(&file);
+        fs::write(&path, bytes).map_err(|source| self.placed(MapsError::io(&path, source)))?;
         self.manifest.flow = Some(file);
         Ok(())
     }
@@ -85,7 +87,7 @@ impl MapsWriter {
     /// [`MapsError`] if the picture cannot be written.
     pub fn add_normals(&mut self, normals: &Grid<Vec3>) -> Result<(), MapsError> {
         let file = "normals.png".to_owned();
-        picture::write_normals(&self.folder.join(&file), normals)?;
+        picture::write_normals(&self.folder.join(&file), normals).map_err(|error| self.placed(error))?;
         self.manifest.normals = Some(file);
         Ok(())
     }
@@ -100,7 +102,7 @@ impl MapsWriter {
             let Some(grid) = step.get(*quantity) else { continue };
             let file = format!("{quantity}/{:04}.png", self.manifest.steps.len());
             let folder = self.folder.join(quantity.name());
-            fs::create_dir_all(&folder).map_err(|source| MapsError::io(&folder, source))?;
+            fs::create_dir_all(&folder).map_err(|source| self.placed(MapsError::io(&folder, source)))?;
             let is_empty = |value: f32| empty_of(*quantity) == value;
             let (scale, pixels) = match quantity {
                 Quantity::Depth => self.depths(grid),
@@ -109,12 +111,22 @@ impl MapsWriter {
                     (scale, scale.values(grid.values(), is_empty, f64::round))
                 }
             };
-            picture::write(&self.folder.join(&file), grid.size(), &pixels)?;
+            picture::write(&self.folder.join(&file), grid.size(), &pixels).map_err(|error| self.placed(error))?;
             let Scale { scale, offset } = scale;
             pictures.insert(*quantity, Picture { file, scale, offset });
         }
         self.manifest.steps.push(Entry { time: step.time, pictures });
         Ok(())
+    }
+
+    /// The error with the place that a file is meant for instead of the hidden one.
+    fn placed(&self, mut error: MapsError) -> MapsError {
+        if let MapsError::Io { path, .. } | MapsError::Picture { path, .. } = &mut error
+            && let Ok(file) = path.strip_prefix(&self.folder)
+        {
+            *path = self.place.join(file);
+        }
+        error
     }
 
     fn depths(&self, grid: &Grid<f32>) -> (Scale, Vec<u16>) {
@@ -132,7 +144,7 @@ impl MapsWriter {
         let pretty = PrettyConfig::new().depth_limit(3);
         let text = ron::ser::to_string_pretty(&self.manifest, pretty);
         let text = text.map_err(|error| MapsError::Manifest { path: path.clone(), reason: error.to_string() })?;
-        fs::write(&path, text + "\n").map_err(|source| MapsError::io(&path, source))?;
+        fs::write(&path, text + "\n").map_err(|source| self.placed(MapsError::io(&path, source)))?;
         let bytes = size_of(&self.folder)?;
         check_place(&self.place)?;
         let moved = |from: &Path, to: &Path| fs::rename(from, to).map_err(|source| MapsError::io(&self.place, source));
