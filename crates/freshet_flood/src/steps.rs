@@ -203,6 +203,14 @@ impl Steps {
         }
     }
 
+    /// What the steps tell of: each of these has a raster in some step, or may have one in an incremental file.
+    pub fn quantities(&self) -> Vec<Quantity> {
+        match &self.source {
+            Source::Folder(folder) => folder.quantities(),
+            Source::Incremental(header) => header.known_quantities(),
+        }
+    }
+
     /// The times of all steps in seconds, which grow. None if only reading the whole file would tell.
     pub fn times(&self) -> Option<&[f64]> {
         match &self.source {

@@ -108,6 +108,7 @@ fn names_tell_quantities() {
     let steps = Steps::open(&path, &Options::default()).unwrap();
     let left_out: Vec<_> = steps.left_out().iter().map(|path| path.file_name().unwrap()).collect();
     assert_eq!(left_out, ["salt01.asc", "terrain.asc"]);
+    assert_eq!(steps.quantities(), Quantity::ALL);
     let step = &all(&steps)[0];
     assert_eq!(step.time, 0.0);
     for (value, quantity) in Quantity::ALL.into_iter().enumerate() {
@@ -202,6 +203,7 @@ fn an_incremental_file_is_all_steps_packed_or_not() {
         let steps = Steps::open(&path, &Options::default()).unwrap();
         assert_eq!((steps.count(), steps.times(), steps.path()), (None, None, path.as_path()));
         assert_eq!(steps.header().unwrap().classes, [[0.0, 0.5, 1.0]]);
+        assert_eq!(steps.quantities(), [Quantity::Depth]);
         assert_eq!(steps.georeference().corner, dvec2(10.0, 20.0));
         assert_eq!(values(&path, Quantity::Depth, &Options::default()), [(0.0, 0.5), (1800.0, 1.0)]);
         assert_eq!(steps.at(1).unwrap().unwrap().time, 1800.0);

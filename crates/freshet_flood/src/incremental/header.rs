@@ -70,6 +70,13 @@ struct Draft {
 }
 
 impl Header {
+    /// The quantities that are known here and have a class besides class 0.
+    pub fn known_quantities(&self) -> Vec<Quantity> {
+        let columns = self.quantities.iter().zip(&self.classes);
+        let used = columns.filter(|(_, classes)| classes.iter().skip(1).any(|value| !value.is_nan()));
+        used.filter_map(|(quantity, _)| *quantity).collect()
+    }
+
     pub(super) fn read<R: Read>(words: &mut Words<R>) -> Result<Self, Fault> {
         let mut draft = Draft { dialect: Dialect::DelftFls, size: None, grid: None, start: None, time_unit: 3600.0 };
         let mut is_comment = false;

@@ -67,6 +67,11 @@ impl Folder {
         self.georeference
     }
 
+    pub(super) fn quantities(&self) -> Vec<Quantity> {
+        let quantities: BTreeSet<Quantity> = self.steps.iter().flat_map(Files::keys).copied().collect();
+        quantities.into_iter().collect()
+    }
+
     pub(super) fn times(&self) -> &[f64] {
         &self.times
     }
