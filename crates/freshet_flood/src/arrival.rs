@@ -3,10 +3,10 @@
 //! A model tells at which step a cell is first wet: i, say, so that the water comes in (t₍ᵢ₋₁₎, tᵢ]. An arrival map says when
 //! in between, so that a flood shown at any time has a front that moves. Symbols: a arrival, t times of the steps, d depth.
 //!
-//! 1. **Front.** From the middle of its bounds every cell's time is spread over the water it is connected with by a
-//!    Gaussian, cut off at its bounds again and again; what J11 gets by a flood fill that adds Gaussian after Gaussian
-//!    (W. Jongeneel's “time map”), without its dependence on the order of visits. Steps become an even ramp, whose slope is
-//!    the front's.
+//! 1. **Front.** Between two steps the front runs evenly from the water before to the water after. Every cell's time is then
+//!    spread over the water it is connected with by a Gaussian, cut off at its bounds again and again, so that fronts are
+//!    smooth from step to step. J11 gets that by a flood fill that adds Gaussian after Gaussian; this does not depend on the
+//!    order of visits, and knows fronts that run farther in a step than the Gaussian reaches.
 //! 2. **Level.** Within the same bounds the depths tell when the water's level passes the cell's bed (`waterline`): creeks
 //!    are wet before banks. a = w · level + (1 − w) · front, or the front alone where the level tells nothing.
 //! 3. **Downstream.** What would be wet before everything around it, without water springing up there, is raised: the wet
@@ -17,6 +17,7 @@
 
 mod diffusion;
 mod downstream;
+mod way;
 
 use freshet_hydro::grid::Grid;
 use glam::UVec2;
@@ -24,7 +25,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::step::{Quantity, Step};
-use crate::waterline::{USUAL_THRESHOLD, wettings};
+use crate::waterline::{Pools, USUAL_THRESHOLD, wettings};
 use diffusion::Bounded;
 
 /// Marks cells that are never wet.
@@ -155,7 +156,7 @@ impl ArrivalBuilder {
                 return Err(ArrivalError::Size { time: step.time, found, expected });
             }
             Some(before) => {
-                for wetting in wettings(before.values(), depth.values(), depth.size(), threshold) {
+                for wetting in wettings(before.values(), depth.values(), depth.size(), threshold, Pools::Unknown) {
                     if self.first[wetting.place] == NEVER {
                         self.first[wetting.place] = index;
                         self.share[wetting.place] = wetting.share;
@@ -177,7 +178,7 @@ impl ArrivalBuilder {
             return Err(ArrivalError::NoSteps);
         };
         let size = depth.size();
-        let bounds = self.bounds(start);
+        let bounds = self.bounds(start, size);
         let front = diffusion::diffused(&bounds, size, diffusion::passes(self.options.radius));
         let cells = bounds.par_iter().zip(&front).zip(&self.share);
         let mut times: Vec<f32> = cells.map(|((bounds, front), share)| self.arrival(bounds, *front, *share)).collect();
@@ -186,17 +187,18 @@ impl ArrivalBuilder {
         Ok(ArrivalMap { start, after: depth.map(|_| times.next().unwrap_or(f32::NAN)) })
     }
 
-    /// What the steps alone tell of each cell: the middle of its bounds, and these, in seconds after the first step.
-    fn bounds(&self, start: f64) -> Vec<Bounded> {
+    /// What the steps alone tell of each cell: its bounds, and how far between them the front is there if it runs evenly, in
+    /// seconds after the first step.
+    fn bounds(&self, start: f64, size: UVec2) -> Vec<Bounded> {
         let after = |step: u32| (self.times[step as usize] - start) as f32;
-        let bounded = |first: &u32| match *first {
+        let bounded = |(first, share): (&u32, f32)| match *first {
             NEVER => Bounded { value: f32::NAN, least: f32::NAN, most: f32::NAN },
             first => {
                 let (least, most) = (after(first.saturating_sub(1)), after(first));
-                Bounded { value: (least + most) / 2.0, least, most }
+                Bounded { value: least + share * (most - least), least, most }
             }
         };
-        self.first.par_iter().map(bounded).collect()
+        self.first.par_iter().zip(way::shares(&self.first, size)).map(bounded).collect()
     }
 
     /// Arrival from what front and level tell, within its bounds, the lower one excluded.

@@ -25,7 +25,7 @@ use rayon::prelude::*;
 
 use crate::arrival::{ArrivalMap, ArrivalOptions};
 use crate::step::{Quantity, Step};
-use crate::waterline::wettings;
+use crate::waterline::{Pools, wettings};
 
 /// Depth in metres of a cell at the share `share` (0…1) of the way between two steps where its depth is `before` and
 /// `after`; it turns dry or wet, if it does, at the share `turn`. See the [module](self) for the formula.
@@ -79,10 +79,10 @@ impl Interval {
         let after = if after.size() == size { after } else { before.clone() };
         let mut turn = before.map(|_| 0.0);
         let turns = turn.values_mut();
-        for wetting in wettings(before.values(), after.values(), size, threshold) {
+        for wetting in wettings(before.values(), after.values(), size, threshold, Pools::Basins) {
             turns[wetting.place] = turn_from_level(wetting.share);
         }
-        for drying in wettings(after.values(), before.values(), size, threshold) {
+        for drying in wettings(after.values(), before.values(), size, threshold, Pools::Basins) {
             turns[drying.place] = turn_from_level(1.0 - drying.share);
         }
         let mut interval = Self { start, end, before, after, turn, threshold };

@@ -10,8 +10,9 @@
 //! that are wet at both steps, carried into the others layer by layer, each cell taking the mean of the up to eight
 //! around it that know one.
 //!
-//! A pool that has no such cell fills like a basin: Δη is its greatest depth. Where the water around does not rise, the
-//! level tells nothing. A cell that dries is one that wets with time running backwards.
+//! Where the water around does not rise, the level tells nothing. A pool that has no such cell may be told to be a basin, in
+//! which Δη is the greatest depth: so water dries up, and comes back. Where water springs up for the first time it does not
+//! fill the land from its deepest place, but spreads over it. A cell that dries is one that wets with time running backwards.
 
 use glam::UVec2;
 use rayon::prelude::*;
@@ -21,6 +22,15 @@ use crate::neighbours::around;
 /// Depth in metres above which a cell counts as wet, unless something else is asked for: the film that models leave on dry
 /// land is thinner.
 pub const USUAL_THRESHOLD: f32 = 0.02;
+
+/// What is known of pools that no water wet at both steps touches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pools {
+    /// Nothing.
+    Unknown,
+    /// Their level rises evenly from their deepest place.
+    Basins,
+}
 
 /// A cell that is dry before and wet after, and what its water tells of the time in between.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +46,7 @@ pub(crate) struct Wetting {
 ///
 /// Depths that are no number count as dry. Given the later raster first, these are the cells that dry, and shares count
 /// backwards.
-pub(crate) fn wettings(before: &[f32], after: &[f32], size: UVec2, threshold: f32) -> Vec<Wetting> {
+pub(crate) fn wettings(before: &[f32], after: &[f32], size: UVec2, threshold: f32, pools: Pools) -> Vec<Wetting> {
     let wets = |place: &usize| !(before[*place] > threshold) && after[*place] > threshold;
     let places: Vec<usize> = (0..after.len()).into_par_iter().filter(wets).collect();
     if places.is_empty() {
@@ -48,7 +58,9 @@ pub(crate) fn wettings(before: &[f32], after: &[f32], size: UVec2, threshold: f3
     };
     let mut rises: Vec<f32> = before.par_iter().zip(after).map(rise).collect();
     spread(&mut rises, &places, size, wets);
-    fill_basins(&mut rises, &places, size, after);
+    if pools == Pools::Basins {
+        fill_basins(&mut rises, &places, size, after);
+    }
     let share = |rise: f32, depth: f32| if rise > 0.0 { (1.0 - depth / rise).max(0.0) } else { f32::NAN };
     places.into_iter().map(|place| Wetting { place, share: share(rises[place], after[place]) }).collect()
 }
@@ -119,7 +131,7 @@ mod tests {
 
     #[test]
     fn a_level_that_rises_evenly_wets_a_beach_when_it_passes_each_cell() {
-        let wet = wettings(&beach(0.55), &beach(1.55), uvec2(20, 1), 0.0);
+        let wet = wettings(&beach(0.55), &beach(1.55), uvec2(20, 1), 0.0, Pools::Unknown);
         let places: Vec<usize> = wet.iter().map(|wetting| wetting.place).collect();
         assert_eq!(places, (6..16).collect::<Vec<_>>());
         for wetting in wet {
@@ -129,22 +141,24 @@ mod tests {
 
     #[test]
     fn drying_is_wetting_backwards() {
-        let dries = wettings(&beach(0.55), &beach(1.55), uvec2(20, 1), 0.0);
+        let dries = wettings(&beach(0.55), &beach(1.55), uvec2(20, 1), 0.0, Pools::Unknown);
         assert_eq!(dries.len(), 10);
-        assert!(wettings(&beach(1.55), &beach(0.55), uvec2(20, 1), 0.0).is_empty());
+        assert!(wettings(&beach(1.55), &beach(0.55), uvec2(20, 1), 0.0, Pools::Unknown).is_empty());
     }
 
     #[test]
-    fn a_new_pool_fills_like_a_basin_from_its_deepest_cell() {
+    fn a_pool_may_fill_like_a_basin_from_its_deepest_cell() {
         let after = [0.0, 0.5, 1.0, 0.25, 0.0, f32::NAN];
-        let shares: Vec<f32> =
-            wettings(&[0.0; 6], &after, uvec2(6, 1), 0.02).iter().map(|wetting| wetting.share).collect();
-        assert_eq!(shares, [0.5, 0.0, 0.75]);
+        let shares = |pools: Pools| -> Vec<f32> {
+            wettings(&[0.0; 6], &after, uvec2(6, 1), 0.02, pools).iter().map(|wetting| wetting.share).collect()
+        };
+        assert_eq!(shares(Pools::Basins), [0.5, 0.0, 0.75]);
+        assert!(shares(Pools::Unknown).iter().all(|share| share.is_nan()));
     }
 
     #[test]
     fn level_water_that_does_not_rise_tells_nothing() {
-        let wet = wettings(&[1.0, 0.0, 0.0], &[1.0, 1.0, 1.0], uvec2(3, 1), 0.02);
+        let wet = wettings(&[1.0, 0.0, 0.0], &[1.0, 1.0, 1.0], uvec2(3, 1), 0.02, Pools::Unknown);
         assert!(wet.len() == 2 && wet.iter().all(|wetting| wetting.share.is_nan()));
     }
 }
