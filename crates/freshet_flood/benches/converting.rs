@@ -26,7 +26,9 @@ const PETTEN: UVec2 = uvec2(886, 1386);
 /// Elevations of rolling land that falls to the east, m.
 fn bed(size: UVec2) -> Vec<f32> {
     let cells = (0..size.y).flat_map(|y| (0..size.x).map(move |x| uvec2(x, y).as_vec2()));
-    cells.map(|cell| 1.5 * fractal_noise(cell / 90.0, UVec2::splat(4096), 4, 1) - 2.0 * cell.x / size.x as f32).collect()
+    cells
+        .map(|cell| 1.5 * fractal_noise(cell / 90.0, UVec2::splat(4096), 4, 1) - 2.0 * cell.x / size.x as f32)
+        .collect()
 }
 
 /// Depths of a level that sinks away from a breach in the west and rises with time, m.
@@ -115,10 +117,15 @@ fn main() -> Result<(), Box<dyn Error>> {
             conversion(size, count)?;
         }
     }
-    for (size, count) in [(uvec2(1000, 1000), 6), (uvec2(2000, 1000), 6), (uvec2(2500, 2000), 6), (uvec2(4000, 2500), 6)] {
+    for (size, count) in
+        [(uvec2(1000, 1000), 6), (uvec2(2000, 1000), 6), (uvec2(2500, 2000), 6), (uvec2(4000, 2500), 6)]
+    {
         conversion(size, count)?;
     }
     let (seven, fourteen) = (arrival(PETTEN, 7)?, arrival(PETTEN, 14)?);
-    println!("arrival map of {PETTEN}: radius 7 {seven:.2} s, radius 14 {fourteen:.2} s, {:.2} times", fourteen / seven);
+    println!(
+        "arrival map of {PETTEN}: radius 7 {seven:.2} s, radius 14 {fourteen:.2} s, {:.2} times",
+        fourteen / seven
+    );
     Ok(())
 }

@@ -40,7 +40,7 @@ pub struct ArrivalOptions {
     /// Three standard deviations of the Gaussian, in cells, 0…[`MOST_RADIUS`]; 14 by default. More makes fronts rounder
     /// and more even, and takes time in proportion to its square.
     pub radius: u32,
-    /// Depth in metres above which a cell is wet, at least 0; 0.02 by default.
+    /// Depth in metres from which on a cell is wet, above 0; 0.02 by default.
     pub threshold: f32,
     /// Share w of the level in the time between two steps, 0…1; 0.7 by default, the best of a flood with every second step
     /// left out (0.5 … 0.8 are nearly as good). 0 is J11's front alone.
@@ -124,7 +124,7 @@ impl ArrivalBuilder {
         let ArrivalOptions { radius, threshold, level_share } = options;
         let checks = [
             ("radius", "0 to 100 cells", radius as f32, radius <= MOST_RADIUS),
-            ("threshold", "a finite depth of at least 0 m", threshold, threshold.is_finite() && threshold >= 0.0),
+            ("threshold", "a finite depth above 0 m", threshold, threshold.is_finite() && threshold > 0.0),
             ("share of the level", "0 to 1", level_share, (0.0..=1.0).contains(&level_share)),
         ];
         match checks.into_iter().find(|(.., is_right)| !is_right) {
@@ -140,14 +140,15 @@ impl ArrivalBuilder {
     /// builder is as before then.
     pub fn add(&mut self, step: &Step) -> Result<(), ArrivalError> {
         let depth = step.get(Quantity::Depth).ok_or(ArrivalError::NoDepth(step.time))?;
-        if let Some(before) = self.times.last().copied().filter(|before| !(step.time > *before)) {
-            return Err(ArrivalError::Time { found: step.time, before });
+        let last = self.times.last().copied().unwrap_or(f64::NEG_INFINITY);
+        if step.time.is_nan() || step.time <= last {
+            return Err(ArrivalError::Time { found: step.time, before: last });
         }
         let index = self.times.len() as u32;
         let threshold = self.options.threshold;
         match self.depth.as_ref() {
             None => {
-                let first = |depth: &f32| if *depth > threshold { 0 } else { NEVER };
+                let first = |depth: &f32| if *depth >= threshold { 0 } else { NEVER };
                 self.first = depth.values().par_iter().map(first).collect();
                 self.share = vec![f32::NAN; depth.values().len()];
             }

@@ -40,8 +40,7 @@ pub enum Part {
 
 impl Part {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Terrain, Self::Arrival, Self::Depth, Self::Velocity, Self::Flow, Self::Maxima];
+    pub const ALL: [Self; 6] = [Self::Terrain, Self::Arrival, Self::Depth, Self::Velocity, Self::Flow, Self::Maxima];
 
     /// The word for it: `terrain`, `arrival`, `depth`, `velocity`, `flow` or `maxima`.
     pub fn name(self) -> &'static str {
@@ -108,11 +107,11 @@ pub enum ConversionError {
     #[error("{}: expected at least two steps, found one: nothing moves", .0.display())]
     OneStep(PathBuf),
     /// Nothing is wet.
-    #[error("{}: no cell of any step is deeper than {threshold} m: there is no flood", .path.display())]
+    #[error("{}: no cell of any step is {threshold} m deep or more: there is no flood", .path.display())]
     AllDry {
         /// The folder or file of the steps.
         path: PathBuf,
-        /// Depth above which a cell would be wet, m.
+        /// Depth from which on a cell would be wet, m.
         threshold: f32,
     },
     /// The model wrote levels but no depths, and there is no terrain to take from them.
@@ -184,7 +183,7 @@ impl Amount {
         // Row by row, so that the sum is the same for any number of threads.
         let rows = depth.values().par_chunks(depth.size().x as usize).map(|row| {
             let sum: f64 = row.iter().filter(|depth| **depth > 0.0).map(|depth| f64::from(*depth)).sum();
-            (sum, row.iter().filter(|depth| **depth > threshold).count())
+            (sum, row.iter().filter(|depth| **depth >= threshold).count())
         });
         let rows: Vec<(f64, usize)> = rows.collect();
         let cell = f64::from(depth.cell_size()).powi(2);
@@ -277,11 +276,7 @@ struct Gathered {
 }
 
 impl Gathered {
-    fn read(
-        source: &Source,
-        options: &Options,
-        progress: &mut impl FnMut(Progress),
-    ) -> Result<Self, ConversionError> {
+    fn read(source: &Source, options: &Options, progress: &mut impl FnMut(Progress)) -> Result<Self, ConversionError> {
         let wrong = |error| ConversionError::Arrival { path: source.path(), source: error };
         let threshold = options.arrival.threshold;
         let mut arrival = ArrivalBuilder::new(options.arrival).map_err(wrong)?;
@@ -306,9 +301,7 @@ impl Gathered {
         let window = match options.crop {
             Crop::Wet => wet.grown(1, georeference.size),
             Crop::All => Window::all(georeference.size),
-            Crop::Rectangle(from, to) => {
-                Window::of_map(&georeference, from, to).ok_or(ConversionError::Outside)?
-            }
+            Crop::Rectangle(from, to) => Window::of_map(&georeference, from, to).ok_or(ConversionError::Outside)?,
         };
         let maxima = maxima.finish(&arrival).ok_or_else(all_dry)?;
         let current = current.finish(&arrival, &maxima.depth);

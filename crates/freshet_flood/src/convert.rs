@@ -47,7 +47,7 @@ pub struct Arguments {
     /// Three standard deviations of the Gaussian that smooths the arrival, in cells, up to 100.
     #[arg(long, default_value_t = ArrivalOptions::default().radius)]
     radius: u32,
-    /// Depth in metres above which a cell is wet.
+    /// Depth in metres from which on a cell is wet.
     #[arg(long, default_value_t = ArrivalOptions::default().threshold)]
     threshold: f32,
     /// Cells to convert: wet, for the least rectangle with all water, none, or WEST,SOUTH,EAST,NORTH on the map.

@@ -81,7 +81,7 @@ impl CurrentBuilder {
     pub fn add(&mut self, step: &Step) {
         let Some(depth) = step.get(Quantity::Depth) else { return };
         let count = depth.values().len();
-        let is_wet = |place: usize| depth.values()[place] > self.threshold;
+        let is_wet = |place: usize| depth.values()[place] >= self.threshold;
         if let Some(velocity) = step.velocity().filter(|velocity| velocity.size() == depth.size()) {
             self.velocity.resize(count, Vec2::ZERO);
             for (place, velocity) in velocity.values().iter().enumerate().filter(|(_, velocity)| velocity.is_finite()) {
@@ -165,7 +165,8 @@ mod tests {
         assert_relative_eq!(mean(step.clone()), vec2(2.0, 0.0), epsilon = 1e-3);
         let with_speed = step.with(Quantity::Speed, depth.map(|_| 0.7));
         assert_relative_eq!(mean(with_speed.clone()), vec2(0.7, 0.0), epsilon = 1e-3);
-        let with_velocity = with_speed.with(Quantity::East, depth.map(|_| 0.1)).with(Quantity::North, depth.map(|_| 0.3));
+        let with_velocity =
+            with_speed.with(Quantity::East, depth.map(|_| 0.1)).with(Quantity::North, depth.map(|_| 0.3));
         assert_relative_eq!(mean(with_velocity), vec2(0.1, -0.3), epsilon = 1e-3);
     }
 }

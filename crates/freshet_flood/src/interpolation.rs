@@ -7,8 +7,8 @@
 //! ```text
 //! s ≤ 0:                  d = d₀
 //! s ≥ 1:                  d = d₁
-//! wets,  d₀ ≤ w < d₁:     d = d₀ for s < f,   w + (d₁ − w) √((s − f) / (1 − f)) from then on
-//! dries, d₁ ≤ w < d₀:     d = w + (d₀ − w) √((f − s) / f) for s ≤ f,   d₁ after that
+//! wets,  d₀ < w ≤ d₁:     d = d₀ for s < f,   w + (d₁ − w) √((s − f) / (1 − f)) from then on
+//! dries, d₁ < w ≤ d₀:     d = w + (d₀ − w) √((f − s) / f) for s ≤ f,   d₁ after that
 //! otherwise:              d = d₀ + (d₁ − d₀) s
 //! ```
 //! The depth is that of the data at the steps, rises or falls all the way in between, and never leaves what is between d₀ and
@@ -38,9 +38,9 @@ pub fn depth_between(before: f32, after: f32, turn: f32, share: f32, threshold: 
         before
     } else if share >= 1.0 {
         after
-    } else if before <= threshold && after > threshold {
+    } else if before < threshold && after >= threshold {
         if share < turn { before } else { grown(after, (share - turn) / (1.0 - turn).max(f32::MIN_POSITIVE)) }
-    } else if before > threshold && after <= threshold {
+    } else if before >= threshold && after < threshold {
         if share > turn { after } else { grown(before, (turn - share) / turn.max(f32::MIN_POSITIVE)) }
     } else {
         before + (after - before) * share
@@ -60,7 +60,7 @@ pub struct Interval {
     pub after: Grid<f32>,
     /// When a cell turns dry or wet, as a share 0…1 of the time between the steps; 0 where it does not turn.
     pub turn: Grid<f32>,
-    /// Depth in metres above which a cell is wet.
+    /// Depth in metres from which on a cell is wet.
     pub threshold: f32,
 }
 
@@ -96,11 +96,10 @@ impl Interval {
     fn follow(&mut self, arrival: &ArrivalMap) {
         let (start, length) = ((self.start - arrival.start) as f32, (self.end - self.start) as f32);
         let depths = self.before.values().par_iter().zip(self.after.values()).zip(arrival.after.values());
-        let threshold = self.threshold;
+        let is_wet = |depth: &f32| *depth >= self.threshold;
         self.turn.values_mut().par_iter_mut().zip(depths).for_each(|(turn, ((before, after), arrival))| {
-            let wets = !(*before > threshold) && *after > threshold;
             // Water that came at an earlier step comes again.
-            if wets && *arrival > start {
+            if !is_wet(before) && is_wet(after) && *arrival > start {
                 *turn = ((arrival - start) / length).min(1.0);
             }
         });
@@ -124,7 +123,7 @@ impl Interval {
 }
 
 /// Another quantity between two steps: blended where both steps have it and are wet, that of the one that is wet where a
-/// cell turns, and `dry` where the depth at that time, `depth`, is not above the threshold. None if one of the steps
+/// cell turns, and `dry` where the depth at that time, `depth`, is below the threshold. None if one of the steps
 /// lacks it.
 pub fn quantity_at(
     interval: &Interval,
@@ -135,7 +134,7 @@ pub fn quantity_at(
 ) -> Option<Grid<f32>> {
     let (first, second) = (before.get(quantity)?, after.get(quantity)?);
     let share = interval.share(time);
-    let is_wet = |grid: &Grid<f32>, place: usize| grid.values()[place] > interval.threshold;
+    let is_wet = |grid: &Grid<f32>, place: usize| grid.values()[place] >= interval.threshold;
     let value = |place: usize| {
         let (first, second) = (first.values()[place], second.values()[place]);
         match (is_wet(&interval.before, place), is_wet(&interval.after, place)) {
@@ -179,7 +178,7 @@ mod tests {
     #[test]
     fn a_beach_dries_from_the_top() {
         let beach = |level: f32| row(&[0.0, 0.1, 0.2, 0.3, 0.4].map(|bed| (level - bed).max(0.0)));
-        let interval = Interval::new((0.0, beach(0.45)), (1.0, beach(0.05)), None, 0.0);
+        let interval = Interval::new((0.0, beach(0.45)), (1.0, beach(0.05)), None, 1e-6);
         let wet = |time: f64| interval.depth_at(time).values().iter().filter(|depth| **depth > 0.0).count();
         let counts: Vec<usize> = (0..=10).map(|tenth| wet(f64::from(tenth) / 10.0)).collect();
         assert!(counts.is_sorted_by(|a, b| a >= b), "{counts:?}");

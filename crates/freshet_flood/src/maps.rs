@@ -34,8 +34,8 @@ use crate::georeference::Georeference;
 use crate::interpolation::{Interval, quantity_at};
 use crate::step::{Quantity, Step};
 pub use manifest::{Entry, FILE, Manifest, Map, Picture, Smoothing, Sources, VERSION};
-pub(crate) use picture::deepest;
 use picture::Scale;
+pub(crate) use picture::deepest;
 pub use writer::MapsWriter;
 
 /// Why a flood cannot be read or written.
@@ -178,7 +178,7 @@ impl FloodMaps {
         &self.manifest.georeference
     }
 
-    /// Depth in metres above which a cell is wet.
+    /// Depth in metres from which on a cell is wet.
     pub fn threshold(&self) -> f32 {
         self.manifest.threshold
     }
@@ -315,7 +315,7 @@ impl FloodMaps {
     fn level_of(&self, depth: &Grid<f32>) -> Result<Grid<f32>, MapsError> {
         let mut level = self.terrain()?;
         for (level, depth) in level.values_mut().iter_mut().zip(depth.values()) {
-            *level = if *depth > self.manifest.threshold { *level + depth } else { f32::NAN };
+            *level = if *depth >= self.manifest.threshold { *level + depth } else { f32::NAN };
         }
         Ok(level)
     }
@@ -350,7 +350,7 @@ fn check(manifest: &Manifest) -> Result<(), &'static str> {
     let checks = [
         (georeference.size.min_element() > 0, "expected at least one column and one row"),
         (is_place && georeference.cell_size > 0.0, "expected a place on the map and a cell size above zero"),
-        (threshold.is_finite() && *threshold >= 0.0, "expected a threshold of at least 0 m"),
+        (threshold.is_finite() && *threshold > 0.0, "expected a threshold above 0 m"),
         (!steps.is_empty(), "expected at least one step"),
         (times.clone().all(f64::is_finite) && times.is_sorted_by(|a, b| a < b), "expected times that increase"),
         (pictures.clone().all(is_number), "expected scales and offsets that are numbers"),

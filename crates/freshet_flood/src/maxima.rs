@@ -84,14 +84,14 @@ impl Maxima {
         self.depth.values_mut().par_iter_mut().zip(depths).for_each(|(most, depth)| *most = most.max(*depth));
         let speed_of = |place: usize| speed.map_or(0.0, |speed| speed.values()[place].max(0.0));
         self.hazard.values_mut().par_iter_mut().zip(depths).enumerate().for_each(|(place, (most, depth))| {
-            if *depth > threshold {
+            if *depth >= threshold {
                 *most = most.max(hazard_rating(*depth, speed_of(place)));
             }
         });
         if let Some(speed) = speed {
             let most = self.speed.get_or_insert_with(|| speed.map(|_| 0.0)).values_mut();
             most.par_iter_mut().zip(speed.values()).zip(depths).for_each(|((most, speed), depth)| {
-                if *depth > threshold {
+                if *depth >= threshold {
                     *most = most.max(*speed);
                 }
             });
@@ -106,7 +106,7 @@ impl Maxima {
         let length = (interval.end - interval.start) as f32;
         let depths = interval.before.values().par_iter().zip(interval.after.values()).zip(interval.turn.values());
         self.duration.values_mut().par_iter_mut().zip(depths).for_each(|(duration, ((before, after), turn))| {
-            *duration += match (*before > threshold, *after > threshold) {
+            *duration += match (*before >= threshold, *after >= threshold) {
                 (true, true) => length,
                 (true, false) => length * turn,
                 (false, true) if *duration == 0.0 => end,

@@ -19,8 +19,8 @@ use rayon::prelude::*;
 
 use crate::neighbours::around;
 
-/// Depth in metres above which a cell counts as wet, unless something else is asked for: the film that models leave on dry
-/// land is thinner.
+/// Depth in metres from which on a cell counts as wet, unless something else is asked for: the film that models leave on dry
+/// land is thinner, and the first class of incremental files is often this.
 pub const USUAL_THRESHOLD: f32 = 0.02;
 
 /// What is known of pools that no water wet at both steps touches.
@@ -47,12 +47,14 @@ pub(crate) struct Wetting {
 /// Depths that are no number count as dry. Given the later raster first, these are the cells that dry, and shares count
 /// backwards.
 pub(crate) fn wettings(before: &[f32], after: &[f32], size: UVec2, threshold: f32, pools: Pools) -> Vec<Wetting> {
-    let wets = |place: &usize| !(before[*place] > threshold) && after[*place] > threshold;
+    // Not so where a depth is no number.
+    let is_wet = |depth: f32| depth >= threshold;
+    let wets = |place: &usize| !is_wet(before[*place]) && is_wet(after[*place]);
     let places: Vec<usize> = (0..after.len()).into_par_iter().filter(wets).collect();
     if places.is_empty() {
         return Vec::new();
     }
-    let rise = |(before, after): (&f32, &f32)| match *before > threshold && *after > threshold {
+    let rise = |(before, after): (&f32, &f32)| match is_wet(*before) && is_wet(*after) {
         true => after - before,
         false => f32::NAN,
     };
@@ -131,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_level_that_rises_evenly_wets_a_beach_when_it_passes_each_cell() {
-        let wet = wettings(&beach(0.55), &beach(1.55), uvec2(20, 1), 0.0, Pools::Unknown);
+        let wet = wettings(&beach(0.55), &beach(1.55), uvec2(20, 1), 1e-6, Pools::Unknown);
         let places: Vec<usize> = wet.iter().map(|wetting| wetting.place).collect();
         assert_eq!(places, (6..16).collect::<Vec<_>>());
         for wetting in wet {
@@ -141,9 +143,9 @@ mod tests {
 
     #[test]
     fn drying_is_wetting_backwards() {
-        let dries = wettings(&beach(0.55), &beach(1.55), uvec2(20, 1), 0.0, Pools::Unknown);
+        let dries = wettings(&beach(0.55), &beach(1.55), uvec2(20, 1), 1e-6, Pools::Unknown);
         assert_eq!(dries.len(), 10);
-        assert!(wettings(&beach(1.55), &beach(0.55), uvec2(20, 1), 0.0, Pools::Unknown).is_empty());
+        assert!(wettings(&beach(1.55), &beach(0.55), uvec2(20, 1), 1e-6, Pools::Unknown).is_empty());
     }
 
     #[test]

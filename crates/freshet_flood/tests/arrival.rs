@@ -37,8 +37,8 @@ fn a_front_without_levels_runs_evenly_between_the_steps() {
 
 /// The fill of a queue without a Gaussian: within each step the cells are numbered by layers of eight neighbours.
 fn plain_fill(steps: &[Step]) -> ArrivalMap {
-    let is_wet = |step: &Step, cell: UVec2| *step.get(Quantity::Depth).unwrap().get(cell).unwrap() > WET;
-    let mut after = steps[0].get(Quantity::Depth).unwrap().map(|depth| if *depth > WET { 0.0 } else { f32::NAN });
+    let is_wet = |step: &Step, cell: UVec2| *step.get(Quantity::Depth).unwrap().get(cell).unwrap() >= WET;
+    let mut after = steps[0].get(Quantity::Depth).unwrap().map(|depth| if *depth >= WET { 0.0 } else { f32::NAN });
     for pair in steps.windows(2) {
         let is_new = |map: &Grid<f32>, cell: UVec2| is_wet(&pair[1], cell) && map.get(cell).unwrap().is_nan();
         let mut layers: Vec<Vec<UVec2>> = Vec::new();
@@ -101,7 +101,11 @@ fn water_goes_around_an_island_and_does_not_come_through_it() {
     let wall = |place: Vec2| place.x == 50.0 && place.y > 10.0;
     let gap = vec2(50.0, 5.0);
     let way = move |place: Vec2| {
-        if place.x < 50.0 { place.distance(vec2(40.0, 50.0)) } else { gap.distance(vec2(40.0, 50.0)) + place.distance(gap) }
+        if place.x < 50.0 {
+            place.distance(vec2(40.0, 50.0))
+        } else {
+            gap.distance(vec2(40.0, 50.0)) + place.distance(gap)
+        }
     };
     let depth = |place: Vec2, time: f32| if !wall(place) && way(place) < SPEED * time { 1.0 } else { 0.0 };
     let map = arrival(&flood(SIZE, 24, 60.0, depth), front(14));
@@ -121,7 +125,7 @@ fn the_first_wetting_counts_also_where_water_recedes_and_returns() {
     let steps = flood(uvec2(60, 5), 30, 30.0, tide);
     let map = arrival(&steps, ArrivalOptions::default());
     for (cell, after) in map.after.iter() {
-        let first = steps.iter().position(|step| *step.get(Quantity::Depth).unwrap().get(cell).unwrap() > WET);
+        let first = steps.iter().position(|step| *step.get(Quantity::Depth).unwrap().get(cell).unwrap() >= WET);
         match first {
             None => assert!(after.is_nan()),
             Some(0) => assert_eq!(*after, 0.0),
@@ -145,7 +149,7 @@ fn steps_that_do_not_belong_together_are_refused() {
     assert!(builder.add(&step(f64::NAN, 3)).is_err());
     let message = builder.add(&step(6.0, 4)).unwrap_err().to_string();
     assert_eq!(message, "the step at 6 s has 4 × 2 cells, the first one 3 × 2");
-    for (radius, threshold, level_share) in [(101, 0.02, 0.7), (14, -1.0, 0.7), (14, f32::NAN, 0.7), (14, 0.02, 1.1)] {
+    for (radius, threshold, level_share) in [(101, 0.02, 0.7), (14, 0.0, 0.7), (14, f32::NAN, 0.7), (14, 0.02, 1.1)] {
         assert!(ArrivalBuilder::new(ArrivalOptions { radius, threshold, level_share }).is_err());
     }
 }
@@ -154,7 +158,8 @@ fn steps_that_do_not_belong_together_are_refused() {
 fn turned(steps: &[Step], from: impl Fn(UVec2) -> UVec2, size: UVec2) -> Vec<Step> {
     let turn = |step: &Step| {
         let depth = step.get(Quantity::Depth).unwrap();
-        Step::new(step.time).with(Quantity::Depth, Grid::from_fn(size, 5.0, |cell| *depth.get(from(cell)).unwrap()).unwrap())
+        Step::new(step.time)
+            .with(Quantity::Depth, Grid::from_fn(size, 5.0, |cell| *depth.get(from(cell)).unwrap()).unwrap())
     };
     steps.iter().map(turn).collect()
 }
@@ -186,7 +191,7 @@ proptest! {
         let map = arrival(&steps, ArrivalOptions::default());
         for (cell, after) in map.after.iter() {
             let depth = |step: &Step| *step.get(Quantity::Depth).unwrap().get(cell).unwrap();
-            match steps.iter().position(|step| depth(step) > WET) {
+            match steps.iter().position(|step| depth(step) >= WET) {
                 None => prop_assert!(after.is_nan()),
                 Some(0) => prop_assert_eq!(*after, 0.0),
                 Some(first) => {

@@ -30,7 +30,7 @@ fn write_ring(folder: &Path) -> Vec<Step> {
     for (index, step) in steps.iter().enumerate() {
         let depth = step.get(Quantity::Depth).unwrap();
         write(format!("dm{index:04}.asc"), depth);
-        write(format!("c{index:04}.asc"), &depth.map(|depth| if *depth > WET { 0.5 + 0.1 * depth } else { f32::NAN }));
+        write(format!("c{index:04}.asc"), &depth.map(|depth| if *depth >= WET { 0.5 + 0.1 * depth } else { f32::NAN }));
     }
     let terrain = Grid::from_fn(uvec2(60, 50), 5.0, |cell| 2.0 - 0.1 * cell.y as f32).unwrap();
     write("terrain.asc".into(), &terrain);
@@ -64,16 +64,16 @@ fn steps_come_back_within_the_precision_and_the_front_moves_between_them() {
             assert!(found == maps.depth(index).unwrap());
             for (expected, found) in expected.values().iter().zip(found.values()) {
                 assert!(f64::from((expected - found).abs()) <= precision / 2.0 + 1e-6, "{expected} {found}");
-                assert!((*expected == 0.0) == (*found == 0.0) && (*expected > WET) == (*found > WET));
+                assert!((*expected == 0.0) == (*found == 0.0) && (*expected >= WET) == (*found >= WET));
             }
             // A third of an interval later more is wet, and all of it at the next step too.
             let later = maps.depth_at(step.time + 20.0).unwrap();
-            let wet = later.values().iter().filter(|depth| **depth > WET).count();
+            let wet = later.values().iter().filter(|depth| **depth >= WET).count();
             assert!(wet > wet_before || index == 0 || index == 5);
             wet_before = wet;
             let next = maps.depth((index + 1).min(5)).unwrap();
             for (later, next) in later.values().iter().zip(next.values()) {
-                assert!(*later <= WET || *next > WET);
+                assert!(*later < WET || *next >= WET);
             }
         }
         assert!(maps.depth_at(-5.0).unwrap() == maps.depth(0).unwrap());
@@ -218,7 +218,8 @@ fn pictures_that_are_gone_or_wrong_say_so() {
     fs::remove_file(depth(1)).unwrap();
     fs::copy(maps.folder().join("normals.png"), depth(2)).unwrap();
     fs::write(depth(3), fs::read(depth(4)).unwrap().split_at(99).0).unwrap();
-    for (index, expected) in [(1, "depth/0001.png: No such file"), (2, "expected 16-bit grey"), (3, "depth/0003.png: ")] {
+    for (index, expected) in [(1, "depth/0001.png: No such file"), (2, "expected 16-bit grey"), (3, "depth/0003.png: ")]
+    {
         let message = maps.depth(index).unwrap_err().to_string();
         assert!(message.contains(expected), "{message}");
     }
@@ -240,14 +241,17 @@ fn options_out_of_range_are_refused() {
     for (options, expected) in [
         (Options { precision: 0.0, ..Options::default() }, "precision must be"),
         (Options { precision: 1e-5, ..Options::default() }, "a depth of 1.8"),
-        (Options { crop: Crop::Rectangle(dvec2(0.0, 0.0), dvec2(9.0, 9.0)), ..Options::default() }, "outside the steps"),
+        (
+            Options { crop: Crop::Rectangle(dvec2(0.0, 0.0), dvec2(9.0, 9.0)), ..Options::default() },
+            "outside the steps",
+        ),
         (
             Options { arrival: ArrivalOptions { radius: 999, ..ArrivalOptions::default() }, ..Options::default() },
             "radius must be 0 to 100 cells, not 999",
         ),
         (
             Options { arrival: ArrivalOptions { threshold: 50.0, ..ArrivalOptions::default() }, ..Options::default() },
-            "no cell of any step is deeper than 50 m",
+            "no cell of any step is 50 m deep or more",
         ),
     ] {
         let message = message(options);

@@ -99,7 +99,14 @@ fn a_folder_of_steps_becomes_maps_and_a_summary() {
         assert!(summary.contains(line), "{line}: {summary}");
     }
     let expected = [
-        "arrival.png", "depth", "duration.png", "flood.ron", "flow.png", "hazard.png", "maximum_depth.png", "normals.png",
+        "arrival.png",
+        "depth",
+        "duration.png",
+        "flood.ron",
+        "flow.png",
+        "hazard.png",
+        "maximum_depth.png",
+        "normals.png",
         "terrain.png",
     ];
     assert_eq!(names(&case.path("out")), expected);
@@ -208,7 +215,7 @@ fn a_bad_step_stops_before_anything_is_written() {
 fn floods_that_are_none_are_refused() {
     let case = Case::new();
     case.fails("--radius 101", "radius must be 0 to 100 cells");
-    case.fails("--threshold 9", "no cell of any step is deeper than 9 m: there is no flood");
+    case.fails("--threshold 9", "no cell of any step is 9 m deep or more: there is no flood");
     case.fails("--crop 0,0,10,10", "outside the steps");
     case.fails("--precision 0.000001", "needs a precision of 7.8e-6 m or coarser");
     let small = Grid::from_fn(uvec2(29, 20), 5.0, |_| 1.0).unwrap();
@@ -221,7 +228,7 @@ fn floods_that_are_none_are_refused() {
     for index in 1..5 {
         fs::remove_file(case.path(&format!("steps/dm{index}.asc"))).unwrap();
     }
-    case.fails("", "no cell of any step is deeper");
+    case.fails("", "no cell of any step is 0.02 m deep or more");
     case.write("steps/dm0.asc", CORNER, &dry.map(|_| 1.0));
     case.fails("", "expected at least two steps, found one");
     fs::remove_file(case.path("steps/dm0.asc")).unwrap();
@@ -259,7 +266,8 @@ fn what_is_in_the_way_stays() {
 #[test]
 fn a_disk_that_is_full_leaves_nothing() {
     let case = Case::new();
-    let script = "trap '' XFSZ; ulimit -f 1; exec \"$0\" convert --terrain terrain.asc --steps steps --interval 1min --out out";
+    let script =
+        "trap '' XFSZ; ulimit -f 1; exec \"$0\" convert --terrain terrain.asc --steps steps --interval 1min --out out";
     let mut shell = Command::new("sh");
     shell.current_dir(case.folder.path()).args(["-c", script, env!("CARGO_BIN_EXE_freshet-flood")]);
     let output = shell.output().unwrap();

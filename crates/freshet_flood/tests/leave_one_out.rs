@@ -19,12 +19,13 @@ fn the_front_beats_blending_and_the_nearest_step_on_a_real_flood() {
     for every in [2, 3, 4] {
         let rows = leave_one_out::scores(&steps, every).unwrap();
         let ours = &rows[4];
-        // The class of the thinnest water begins at the threshold: blending two classes is wet where either is.
+        // Twelve classes tell the rise of the water badly: with its depths in full a third to two thirds are missed less.
         for (way, row) in leave_one_out::WAYS.iter().zip(&rows).take(3) {
-            assert!(ours.mean() > row.mean(), "{way}, {every}: {} {}", ours.mean(), row.mean());
+            assert!(ours.all.f1() > row.all.f1() && ours.steps.len() == 24 / every * (every - 1), "{way}, {every}");
             let missed = |row: &leave_one_out::Row| 1.0 - row.later.f1();
-            assert!(missed(ours) < 0.67 * missed(row), "{way}, {every}: {} {}", missed(ours), missed(row));
-            assert!(ours.turning.f1() > row.turning.f1() + 0.08, "{way}, {every}");
+            assert!(missed(ours) < 0.85 * missed(row), "{way}, {every}: {} {}", missed(ours), missed(row));
+            assert!(ours.turning.f1() > row.turning.f1() + 0.05, "{way}, {every}");
+            assert!(ours.later.error() < 1.05 * row.later.error(), "{way}, {every}");
         }
     }
 }

@@ -94,10 +94,12 @@ mod tests {
     #[test]
     fn a_point_becomes_a_round_gaussian() {
         let size = uvec2(61, 61);
-        let cells: Vec<Bounded> = (0..61 * 61).map(|place| free(if place == 30 * 61 + 30 { 1.0 } else { 0.0 })).collect();
+        let cells: Vec<Bounded> =
+            (0..61 * 61).map(|place| free(if place == 30 * 61 + 30 { 1.0 } else { 0.0 })).collect();
         let values = diffused(&cells, size, passes(14));
         let variance = 0.4 * 54.0;
-        let gaussian = |x: f32, y: f32| (-(x * x + y * y) / (2.0 * variance)).exp() / (std::f32::consts::TAU * variance);
+        let gaussian =
+            |x: f32, y: f32| (-(x * x + y * y) / (2.0 * variance)).exp() / (std::f32::consts::TAU * variance);
         for (place, value) in values.iter().enumerate() {
             let (x, y) = ((place % 61) as f32 - 30.0, (place / 61) as f32 - 30.0);
             assert_relative_eq!(*value, gaussian(x, y), epsilon = 0.02 * gaussian(0.0, 0.0));
@@ -122,7 +124,8 @@ mod tests {
 
     #[test]
     fn bounds_hold() {
-        let cells: Vec<Bounded> = (0..30).map(|x| Bounded { value: x as f32, least: x as f32, most: x as f32 }).collect();
+        let cells: Vec<Bounded> =
+            (0..30).map(|x| Bounded { value: x as f32, least: x as f32, most: x as f32 }).collect();
         let values = diffused(&cells, uvec2(30, 1), 10);
         assert!(values.iter().enumerate().all(|(x, value)| *value == x as f32));
         assert_eq!((passes(14), passes(7), passes(0)), (54, 14, 0));

@@ -103,13 +103,7 @@ fn distances(first: &[u32], size: UVec2, is_start: impl Fn(u32, u32) -> bool) ->
 }
 
 /// The distance of a cell by those of its neighbours, 0 for starts.
-fn solved(
-    distances: &[f32],
-    first: &[u32],
-    size: UVec2,
-    place: usize,
-    is_start: &impl Fn(u32, u32) -> bool,
-) -> f32 {
+fn solved(distances: &[f32], first: &[u32], size: UVec2, place: usize, is_start: &impl Fn(u32, u32) -> bool) -> f32 {
     let columns = size.x as usize;
     let (mut a, mut b, mut diagonal) = (f32::INFINITY, f32::INFINITY, f32::INFINITY);
     for other in around(place, size) {
@@ -160,7 +154,11 @@ mod tests {
         let distances = distances(&first, size, |other, here| other < here);
         for (place, distance) in distances.iter().enumerate().filter(|(place, _)| radius(*place) > 3.0) {
             // A circle of cells is half a cell off here and there, and the scheme is of first order.
-            assert!((distance - (radius(place) - 2.7)).abs() < 0.5 + 0.03 * radius(place), "{distance} {}", radius(place));
+            assert!(
+                (distance - (radius(place) - 2.7)).abs() < 0.5 + 0.03 * radius(place),
+                "{distance} {}",
+                radius(place)
+            );
         }
     }
 

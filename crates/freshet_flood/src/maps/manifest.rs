@@ -24,7 +24,7 @@ pub struct Manifest {
     pub georeference: Georeference,
     /// Which cells of the model's rasters these are.
     pub window: Window,
-    /// Depth in metres above which a cell is wet.
+    /// Depth in metres from which on a cell is wet.
     pub threshold: f32,
     /// Depths in metres err by at most half of this.
     pub precision: f64,

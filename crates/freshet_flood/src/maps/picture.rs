@@ -25,14 +25,14 @@ pub(crate) fn deepest(precision: f64, threshold: f32) -> f64 {
 
 impl Scale {
     /// Pixels for depths: (q − ½) p for the pixel q, with p the greatest quantum up to `precision` that divides the
-    /// threshold.
+    /// threshold, which is above 0.
     ///
-    /// A depth in ((q − 1) p, q p] becomes q: it errs by at most p / 2, only 0 becomes 0, and no depth passes the threshold,
+    /// A depth in [(q − 1) p, q p) becomes q: it errs by at most p / 2, only 0 becomes 0, and no depth passes the threshold,
     /// which is a limit between pixels.
     pub fn of_depth(precision: f64, threshold: f32) -> Self {
         let threshold = f64::from(threshold);
         let parts = (threshold / precision - 1e-6).ceil().max(1.0);
-        let scale = if threshold > 0.0 { threshold / parts } else { precision };
+        let scale = threshold / parts;
         Self { scale, offset: -scale / 2.0 }
     }
 
@@ -51,12 +51,12 @@ impl Scale {
     pub fn depths(&self, depths: &[f32], threshold: f32) -> Vec<u16> {
         let limit = f64::from(threshold) / self.scale;
         let pixel = |depth: &f32| {
-            if !(*depth > 0.0) {
+            if depth.is_nan() || *depth <= 0.0 {
                 return 0;
             }
-            let pixel = (f64::from(*depth) / self.scale).ceil().clamp(1.0, f64::from(u16::MAX));
+            let pixel = ((f64::from(*depth) / self.scale).floor() + 1.0).min(f64::from(u16::MAX));
             // Division rounds: what is decided is decided by the depth itself.
-            let pixel = if *depth > threshold { pixel.max(limit.round() + 1.0) } else { pixel.min(limit.round().max(1.0)) };
+            let pixel = if *depth >= threshold { pixel.max(limit.round() + 1.0) } else { pixel.min(limit.round()) };
             pixel as u16
         };
         depths.par_iter().map(pixel).collect()
@@ -142,14 +142,14 @@ mod tests {
         fn depths_err_by_half_a_quantum_and_stay_on_their_side(
             depth in prop_oneof![0.0_f32..0.05, 0.0_f32..30.0, Just(0.02_f32), Just(0.0), Just(f32::NAN)],
             precision in prop_oneof![Just(0.001), 0.0006_f64..0.3],
-            threshold in prop_oneof![Just(0.02_f32), Just(0.0), 0.001_f32..0.2],
+            threshold in prop_oneof![Just(0.02_f32), 0.001_f32..0.2],
         ) {
             let scale = Scale::of_depth(precision, threshold);
             let back = scale.value(scale.depths(&[depth], threshold)[0], 0.0);
             prop_assert!(scale.scale <= precision * 1.000_01);
             if depth > 0.0 {
                 prop_assert!(f64::from((back - depth).abs()) <= scale.scale / 2.0 + 2e-6, "{depth} {back}");
-                prop_assert!(back > 0.0 && (back > threshold) == (depth > threshold), "{depth} {back}");
+                prop_assert!(back > 0.0 && (back >= threshold) == (depth >= threshold), "{depth} {back}");
             } else {
                 prop_assert_eq!(back, 0.0);
             }

@@ -10,7 +10,8 @@ use freshet_flood::waterline::USUAL_THRESHOLD;
 use freshet_hydro::grid::Grid;
 
 /// The ways of guessing; the last one is the library's.
-pub const WAYS: [&str; 5] = ["step before", "step after", "linear blending", "front without levels", "front and levels"];
+pub const WAYS: [&str; 5] =
+    ["step before", "step after", "linear blending", "front without levels", "front and levels"];
 
 /// Wet areas guessed and true, and the error of the depths in either.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,7 +25,7 @@ pub struct Score {
 
 impl Score {
     fn add(&mut self, guess: f32, truth: f32) {
-        let (is_guessed, is_real) = (guess > USUAL_THRESHOLD, truth > USUAL_THRESHOLD);
+        let (is_guessed, is_real) = (guess >= USUAL_THRESHOLD, truth >= USUAL_THRESHOLD);
         self.both += f64::from(u8::from(is_guessed && is_real));
         self.guessed += f64::from(u8::from(is_guessed));
         self.real += f64::from(u8::from(is_real));
@@ -58,12 +59,6 @@ pub struct Row {
     pub turning: Score,
 }
 
-impl Row {
-    pub fn mean(&self) -> f64 {
-        self.steps.iter().sum::<f64>() / self.steps.len() as f64
-    }
-}
-
 fn arrival_of(steps: &[Grid<f32>], level_share: f32) -> Result<ArrivalMap, Box<dyn Error>> {
     let mut builder = ArrivalBuilder::new(ArrivalOptions { level_share, ..ArrivalOptions::default() })?;
     for (time, depth) in steps.iter().enumerate() {
@@ -90,9 +85,8 @@ pub fn scores(steps: &[Grid<f32>], every: usize) -> Result<[Row; 5], Box<dyn Err
         let [front, level] = [&front, &level].map(|arrival| {
             Interval::new((time, pair[0].clone()), (time + 1.0, pair[1].clone()), Some(arrival), USUAL_THRESHOLD)
         });
-        let turns = |place: usize| {
-            (pair[0].values()[place] > USUAL_THRESHOLD) != (pair[1].values()[place] > USUAL_THRESHOLD)
-        };
+        let turns =
+            |place: usize| (pair[0].values()[place] >= USUAL_THRESHOLD) != (pair[1].values()[place] >= USUAL_THRESHOLD);
         for part in 1..every {
             let truth = steps[index * every + part].values();
             let guesses = guesses(&level, &front, time + part as f64 / every as f64);

@@ -7,7 +7,7 @@ use freshet_flood::step::{Quantity, Step};
 use freshet_hydro::grid::Grid;
 use glam::{UVec2, Vec2, uvec2, vec2};
 
-/// Depth above which a cell is wet, m.
+/// Depth from which on a cell is wet, m.
 pub const WET: f32 = 0.02;
 
 /// Steps at whole multiples of `interval` seconds from 0 on, with the depth at a place (in cells) and time.
