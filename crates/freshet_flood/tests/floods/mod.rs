@@ -104,7 +104,7 @@ pub fn springs(map: &ArrivalMap) -> Vec<UVec2> {
             let here = map.after.get(cell).unwrap();
             for other in around(cell, size) {
                 let there = map.after.get(other).unwrap();
-                is_lowest &= !(there < here);
+                is_lowest &= there.is_nan() || there >= here;
                 let index = is_seen.index(other).unwrap();
                 if there == here && !std::mem::replace(&mut is_seen.values_mut()[index], true) {
                     level.push(other);
