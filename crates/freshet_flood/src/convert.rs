@@ -110,6 +110,11 @@ fn name(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
+/// The bar while the number of steps is known.
+const TIME_LEFT: &str = "{msg:10} {wide_bar} {pos}/{len}, {eta} left";
+/// The bar while it is not.
+const TIME_PASSED: &str = "{msg:10} {spinner} {pos} steps, {elapsed}";
+
 /// A bar with the time left; it hides by itself where there is no terminal.
 fn progress_bar(steps: &Steps, is_quiet: bool) -> Result<ProgressBar> {
     if is_quiet {
@@ -118,11 +123,7 @@ fn progress_bar(steps: &Steps, is_quiet: bool) -> Result<ProgressBar> {
     // Each step is read twice.
     let count = steps.count().map(|count| 2 * count as u64);
     let bar = count.map_or_else(ProgressBar::new_spinner, ProgressBar::new);
-    let template = match count {
-        Some(_) => "{msg:10} {wide_bar} {pos}/{len}, {eta} left",
-        None => "{msg:10} {spinner} {pos} steps, {elapsed}",
-    };
-    bar.set_style(ProgressStyle::with_template(template)?);
+    bar.set_style(ProgressStyle::with_template(if count.is_some() { TIME_LEFT } else { TIME_PASSED })?);
     bar.enable_steady_tick(Duration::from_millis(200));
     Ok(bar)
 }
@@ -135,6 +136,10 @@ fn show(bar: &ProgressBar, progress: Progress) {
         }
         Progress::Maps(count) => {
             bar.set_message("maps");
+            // Now an incremental file has told how many steps there are.
+            if let Ok(style) = ProgressStyle::with_template(TIME_LEFT) {
+                bar.set_style(style);
+            }
             bar.set_length(2 * count as u64);
             bar.set_position(count as u64);
         }

@@ -1,4 +1,7 @@
-//! Raster formats of hydraulic models and the flow maps made from them. Knows no engine.
+//! Raster formats of hydraulic models, and the flow maps and floods made from them. Knows no engine.
+//!
+//! [`steps`] reads what a model wrote, [`conversion`] makes maps of it, and [`maps::FloodMaps`] reads these and tells the
+//! depth at any time.
 //!
 //! Positions are those of [`freshet_hydro`]: metres from the centre of a raster, x to the east and z to the south.
 

@@ -24,7 +24,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::OnceLock;
 
 use freshet_hydro::grid::{Grid, GridError};
-use glam::UVec2;
+use glam::{UVec2, Vec3};
 use serde::Deserialize;
 use thiserror::Error;
 
@@ -203,6 +203,16 @@ impl FloodMaps {
     /// As for [`FloodMaps::map`].
     pub fn terrain(&self) -> Result<Grid<f32>, MapsError> {
         self.map(Map::Terrain)
+    }
+
+    /// Unit normals of the terrain (east, up, south).
+    ///
+    /// # Errors
+    /// As for [`FloodMaps::map`].
+    pub fn normals(&self) -> Result<Grid<Vec3>, MapsError> {
+        let file = self.manifest.normals.as_ref().ok_or_else(|| self.missing("terrain"))?;
+        let Georeference { size, cell_size, .. } = self.manifest.georeference;
+        Ok(Grid::new(size, cell_size as f32, picture::read_normals(&self.folder.join(file), size)?)?)
     }
 
     /// When the water first reaches each cell. Read once.

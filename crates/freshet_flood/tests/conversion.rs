@@ -16,7 +16,7 @@ use freshet_flood::raster::Raster;
 use freshet_flood::step::{Quantity, Step};
 use freshet_flood::steps::{self, Steps, Times};
 use freshet_hydro::grid::Grid;
-use glam::{DVec2, dvec2, uvec2, vec2};
+use glam::{DVec2, Vec3, dvec2, uvec2, vec2};
 use tempfile::TempDir;
 
 const CORNER: DVec2 = dvec2(105_000.0, 530_000.0);
@@ -93,6 +93,9 @@ fn everything_is_there_and_means_what_the_manifest_says() {
     // Ten cells from the source the water arrives after 10.2 / 0.06 s and is 0.8 m deep in the end.
     let terrain = maps.terrain().unwrap();
     assert!((at(&terrain) - 0.0).abs() < 1e-3);
+    // The land falls by 0.1 m a cell of 5 m to the south.
+    let normal = *maps.normals().unwrap().get(uvec2(5, 5)).unwrap();
+    assert!(normal.abs_diff_eq(Vec3::new(0.0, 1.0, 0.02).normalize(), 1e-4), "{normal}");
     let arrival = maps.arrival().unwrap();
     assert!((at(&arrival.after) - 170.0).abs() < 20.0, "{}", at(&arrival.after));
     assert!(arrival.after.values()[0].is_nan());

@@ -116,6 +116,18 @@ fn write_samples(
 
 /// Reads a 16-bit grey picture of `size`.
 pub(super) fn read(path: &Path, size: UVec2) -> Result<Vec<u16>, MapsError> {
+    read_samples(path, size, ColorType::Grayscale)
+}
+
+/// Reads normals: see [`super::Manifest::normals`].
+pub(super) fn read_normals(path: &Path, size: UVec2) -> Result<Vec<Vec3>, MapsError> {
+    let component = |sample: u16| (f32::from(sample) - 32768.0) / 32767.0;
+    let samples = read_samples(path, size, ColorType::Rgb)?;
+    let normal = |rgb: &[u16]| Vec3::new(component(rgb[0]), component(rgb[1]), component(rgb[2]));
+    Ok(samples.chunks_exact(3).map(|rgb| normal(rgb).normalize_or(Vec3::Y)).collect())
+}
+
+fn read_samples(path: &Path, size: UVec2, color: ColorType) -> Result<Vec<u16>, MapsError> {
     let file = File::open(path).map_err(|source| MapsError::io(path, source))?;
     let wrong = |reason: String| MapsError::Picture { path: path.into(), reason };
     let decoding = |error: png::DecodingError| wrong(error.to_string());
@@ -124,8 +136,9 @@ pub(super) fn read(path: &Path, size: UVec2) -> Result<Vec<u16>, MapsError> {
     if found != size {
         return Err(MapsError::Size { path: path.into(), found, expected: size });
     }
-    if reader.output_color_type() != (ColorType::Grayscale, BitDepth::Sixteen) {
-        return Err(wrong("expected 16-bit grey".into()));
+    if reader.output_color_type() != (color, BitDepth::Sixteen) {
+        let color = if color == ColorType::Rgb { "RGB" } else { "grey" };
+        return Err(wrong(format!("expected 16-bit {color}")));
     }
     let mut bytes = vec![0; reader.output_buffer_size().unwrap_or_default()];
     reader.next_frame(&mut bytes).map_err(decoding)?;
