@@ -11,9 +11,11 @@ use std::time::Instant;
 
 use freshet_flood::arrival::{ArrivalBuilder, ArrivalOptions};
 use freshet_flood::conversion::{Options, convert};
+use freshet_flood::interpolation::Interval;
 use freshet_flood::raster::Raster;
 use freshet_flood::step::{Quantity, Step};
 use freshet_flood::steps::{self, Steps, Times};
+use freshet_flood::waterline::USUAL_THRESHOLD;
 use freshet_hydro::grid::Grid;
 use freshet_hydro::noise::fractal_noise;
 use glam::{UVec2, uvec2};
@@ -109,6 +111,17 @@ fn arrival(size: UVec2, radius: u32) -> Result<f64, Box<dyn Error>> {
     Ok(start.elapsed().as_secs_f64())
 }
 
+/// Seconds to prepare what happens between two steps, and to draw one instant of it.
+fn interval(size: UVec2) -> Result<(f64, f64), Box<dyn Error>> {
+    let bed = bed(size);
+    let [before, after] = [0.4, 0.5].map(|share| Grid::new(size, 5.0, depths(&bed, size, share)));
+    let start = Instant::now();
+    let interval = Interval::new((0.0, before?), (1.0, after?), None, USUAL_THRESHOLD);
+    let prepared = start.elapsed().as_secs_f64();
+    interval.depth_at(0.5);
+    Ok((prepared, start.elapsed().as_secs_f64() - prepared))
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let threads = std::env::args().filter_map(|argument| argument.parse().ok()).next().unwrap_or(0);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
@@ -127,5 +140,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         "arrival map of {PETTEN}: radius 7 {seven:.2} s, radius 14 {fourteen:.2} s, {:.2} times",
         fourteen / seven
     );
+    for size in [PETTEN, uvec2(4000, 2500)] {
+        let (prepared, drawn) = interval(size)?;
+        println!("interval of {size}: {:.0} ms to prepare, {:.0} ms to draw", prepared * 1e3, drawn * 1e3);
+    }
     Ok(())
 }

@@ -13,6 +13,7 @@ use thiserror::Error;
 
 use crate::arrival::{ArrivalBuilder, ArrivalError, ArrivalMap, ArrivalOptions};
 use crate::current::CurrentBuilder;
+use crate::flow_map::FlowMap;
 use crate::maps::{Manifest, Map, MapsError, MapsWriter, Smoothing, Sources, VERSION, deepest};
 use crate::maxima::{Maxima, MaximaBuilder};
 use crate::raster::Raster;
@@ -202,7 +203,7 @@ pub fn convert(
     terrain: Option<(&str, &Raster)>,
     options: &Options,
     place: &Path,
-    mut progress: impl FnMut(Progress),
+    mut progress: impl FnMut(Progress) + Send,
 ) -> Result<Summary, ConversionError> {
     if !(options.precision.is_finite() && options.precision > 0.0) {
         return Err(ConversionError::Precision(options.precision));
@@ -211,8 +212,20 @@ pub fn convert(
     let maps = Gathered::read(&source, options, &mut progress)?;
     progress(Progress::Maps(maps.amounts.len()));
     let mut writer = MapsWriter::new(place, manifest(&source, &maps, options))?;
-    write_maps(&mut writer, &source, &maps, &options.parts)?;
-    write_steps(&mut writer, &source, &maps, &options.parts, &mut progress)?;
+    // To pack the flow map takes as long as all else.
+    let flow = || {
+        let is_wanted = options.parts.contains(&Part::Flow);
+        is_wanted.then(|| FlowMap::new(maps.window.of(&maps.current), None).encode()).transpose()
+    };
+    let others = || {
+        write_maps(&mut writer, &source, &maps, &options.parts)?;
+        write_steps(&mut writer, &source, &maps, &options.parts, &mut progress)
+    };
+    let (others, flow) = rayon::join(others, flow);
+    others?;
+    if let Some(bytes) = flow.map_err(MapsError::from)? {
+        writer.add_flow(&bytes)?;
+    }
     Ok(Summary {
         window: maps.window,
         wet_cells: maps.arrival.after.values().iter().filter(|after| !after.is_nan()).count(),
@@ -354,9 +367,6 @@ fn write_maps(
     }
     if parts.contains(&Part::Arrival) {
         writer.add_map(Map::Arrival, &window.of(&maps.arrival.after))?;
-    }
-    if parts.contains(&Part::Flow) {
-        writer.add_flow(window.of(&maps.current))?;
     }
     if parts.contains(&Part::Maxima) {
         let Maxima { depth, speed, duration, hazard } = &maps.maxima;

@@ -82,12 +82,11 @@ pub fn normals(terrain: &Grid<f32>) -> Grid<Vec3> {
             let value = terrain.get((cell + IVec2::new(x, y)).as_uvec2()).copied();
             value.filter(|z| !z.is_nan()).unwrap_or(here)
         };
-        let difference = |at: &dyn Fn(i32, i32) -> f32| {
-            (at(1, -1) - at(-1, -1)) + 2.0 * (at(1, 0) - at(-1, 0)) + (at(1, 1) - at(-1, 1))
-        };
+        let [nw, n, ne] = [-1, 0, 1].map(|x| z(x, -1));
+        let [sw, s, se] = [-1, 0, 1].map(|x| z(x, 1));
         let run = 8.0 * terrain.cell_size();
-        let slope_x = difference(&|along, across| z(along, across)) / run;
-        let slope_z = difference(&|along, across| z(across, along)) / run;
+        let slope_x = ((ne - nw) + 2.0 * (z(1, 0) - z(-1, 0)) + (se - sw)) / run;
+        let slope_z = ((sw - nw) + 2.0 * (s - n) + (se - ne)) / run;
         if here.is_nan() { Vec3::Y } else { Vec3::new(-slope_x, 1.0, -slope_z).normalize() }
     };
     let normals: Vec<Vec3> = (0..terrain.values().len()).into_par_iter().map(normal).collect();

@@ -5,14 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use freshet_hydro::grid::Grid;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use ron::ser::PrettyConfig;
 use tempfile::TempDir;
 
 use super::manifest::{self, Entry, Manifest, Map, Picture};
 use super::picture::{self, Scale};
 use super::{MapsError, empty_of};
-use crate::flow_map::FlowMap;
 use crate::step::{Quantity, Step};
 
 /// Writes a flood into a hidden folder beside its place, and moves it there when all is done.
@@ -68,13 +67,12 @@ impl MapsWriter {
         Ok(())
     }
 
-    /// Writes the current (east, south), m/s.
+    /// Writes the current: the bytes of a picture as [`FlowMap::encode`](crate::flow_map::FlowMap::encode) gives them.
     ///
     /// # Errors
     /// [`MapsError`] if the picture cannot be written.
-    pub fn add_flow(&mut self, current: Grid<Vec2>) -> Result<(), MapsError> {
+    pub fn add_flow(&mut self, bytes: &[u8]) -> Result<(), MapsError> {
         let file = "flow.png".to_owned();
-        let bytes = FlowMap::new(current, None).encode()?;
         let path = self.folder.join(&file);
         fs::write(&path, bytes).map_err(|source| self.placed(MapsError::io(&path, source)))?;
         self.manifest.flow = Some(file);
