@@ -4,23 +4,24 @@
 //! written before the last step was found good. The second time the steps themselves are written. Memory holds one step, the
 //! one before it, and the maps.
 
+mod gathered;
+mod summary;
+
 use std::path::{Path, PathBuf};
 
-use freshet_hydro::grid::Grid;
-use glam::{DVec2, Vec2};
-use rayon::prelude::*;
+use glam::DVec2;
 use thiserror::Error;
 
-use crate::arrival::{ArrivalBuilder, ArrivalError, ArrivalMap, ArrivalOptions};
-use crate::current::CurrentBuilder;
+use crate::arrival::{ArrivalError, ArrivalOptions};
 use crate::flow_map::FlowMap;
-use crate::maps::{Manifest, Map, MapsError, MapsWriter, Smoothing, Sources, VERSION, deepest};
-use crate::maxima::{Maxima, MaximaBuilder};
+use crate::maps::{Manifest, Map, MapsError, MapsWriter, Smoothing, Sources, VERSION};
+use crate::maxima::Maxima;
 use crate::raster::Raster;
 use crate::step::{Quantity, Step};
 use crate::steps::{Steps, StepsError};
-use crate::terrain::{NotCovered, Resampling, normals, on_raster};
-use crate::window::Window;
+use crate::terrain::{NotCovered, normals};
+use gathered::{Gathered, Source};
+pub use summary::{Amount, Progress, Summary};
 
 /// What can be converted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -140,59 +141,6 @@ pub enum ConversionError {
     Maps(#[from] MapsError),
 }
 
-/// How far a conversion is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
-    /// So many steps were read the first time.
-    Read(usize),
-    /// The maps are being made; there are so many steps.
-    Maps(usize),
-    /// So many steps were written.
-    Written(usize),
-}
-
-/// What was converted.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Summary {
-    /// Time (s), volume (m³) and wet area (m²) of each step, over all cells of the model.
-    pub steps: Vec<Amount>,
-    /// The cells that were converted, of those of the model.
-    pub window: Window,
-    /// The cells that are ever wet.
-    pub wet_cells: usize,
-    /// The latest arrival, s since the first step.
-    pub last_arrival: f32,
-    /// How the terrain was brought onto the cells of the steps.
-    pub terrain: Option<Resampling>,
-    /// Bytes of all files.
-    pub bytes: u64,
-}
-
-/// How much water there is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Amount {
-    /// Time since the beginning of the data, s.
-    pub time: f64,
-    /// Volume, m³.
-    pub volume: f64,
-    /// Wet area, m².
-    pub area: f64,
-}
-
-impl Amount {
-    fn of(time: f64, depth: &Grid<f32>, threshold: f32) -> Self {
-        // Row by row, so that the sum is the same for any number of threads.
-        let rows = depth.values().par_chunks(depth.size().x as usize).map(|row| {
-            let sum: f64 = row.iter().filter(|depth| **depth > 0.0).map(|depth| f64::from(*depth)).sum();
-            (sum, row.iter().filter(|depth| **depth >= threshold).count())
-        });
-        let rows: Vec<(f64, usize)> = rows.collect();
-        let cell = f64::from(depth.cell_size()).powi(2);
-        let (sum, count) = rows.iter().fold((0.0, 0), |(sum, count), row| (sum + row.0, count + row.1));
-        Self { time, volume: sum * cell, area: count as f64 * cell }
-    }
-}
-
 /// Converts `steps`, over `terrain` (with its name) if it is known, into a folder at `place`, which appears whole or not at
 /// all. `progress` is called after every step.
 ///
@@ -234,102 +182,6 @@ pub fn convert(
         bytes: writer.finish()?,
         steps: maps.amounts,
     })
-}
-
-/// Steps and the terrain under them.
-struct Source<'a> {
-    steps: &'a Steps,
-    /// Name, elevations on the cells of the steps, and how they came there.
-    bed: Option<(&'a str, Grid<f32>, Resampling)>,
-}
-
-impl<'a> Source<'a> {
-    fn new(steps: &'a Steps, terrain: Option<(&'a str, &Raster)>) -> Result<Self, ConversionError> {
-        let bed = match terrain {
-            None => None,
-            Some((name, terrain)) => {
-                let (grid, how) = on_raster(&terrain.grid, &terrain.georeference, &steps.georeference())?;
-                Some((name, grid, how))
-            }
-        };
-        Ok(Self { steps, bed })
-    }
-
-    fn path(&self) -> PathBuf {
-        self.steps.path().into()
-    }
-
-    /// The steps, with depths.
-    fn iter(&self) -> impl Iterator<Item = Result<Step, ConversionError>> {
-        self.steps.iter().map(|step| self.with_depth(step?))
-    }
-
-    /// The step with the depth of its level over the terrain, if it has none.
-    fn with_depth(&self, step: Step) -> Result<Step, ConversionError> {
-        if step.get(Quantity::Depth).is_some() {
-            return Ok(step);
-        }
-        let Some(level) = step.get(Quantity::Level) else { return Ok(step) };
-        let (_, bed, _) = self.bed.as_ref().ok_or_else(|| ConversionError::NoTerrain(self.path()))?;
-        let mut depth = level.clone();
-        for (depth, bed) in depth.values_mut().iter_mut().zip(bed.values()) {
-            *depth = (*depth - bed).max(0.0);
-        }
-        Ok(step.with(Quantity::Depth, depth))
-    }
-}
-
-/// What the first reading tells.
-struct Gathered {
-    arrival: ArrivalMap,
-    maxima: Maxima,
-    current: Grid<Vec2>,
-    amounts: Vec<Amount>,
-    window: Window,
-}
-
-impl Gathered {
-    fn read(source: &Source, options: &Options, progress: &mut impl FnMut(Progress)) -> Result<Self, ConversionError> {
-        let wrong = |error| ConversionError::Arrival { path: source.path(), source: error };
-        let threshold = options.arrival.threshold;
-        let mut arrival = ArrivalBuilder::new(options.arrival).map_err(wrong)?;
-        let mut maxima = MaximaBuilder::new(threshold);
-        let mut current = CurrentBuilder::new(threshold);
-        let mut amounts = Vec::new();
-        for step in source.iter() {
-            let step = step?;
-            arrival.add(&step).map_err(wrong)?;
-            maxima.add(&step);
-            current.add(&step);
-            amounts.extend(step.get(Quantity::Depth).map(|depth| Amount::of(step.time, depth, threshold)));
-            progress(Progress::Read(amounts.len()));
-        }
-        let arrival = arrival.finish().map_err(wrong)?;
-        let all_dry = || ConversionError::AllDry { path: source.path(), threshold };
-        let wet = Window::of_cells(&arrival.after, |after| !after.is_nan()).ok_or_else(all_dry)?;
-        if amounts.len() < 2 {
-            return Err(ConversionError::OneStep(source.path()));
-        }
-        let georeference = source.steps.georeference();
-        let window = match options.crop {
-            Crop::Wet => wet.grown(1, georeference.size),
-            Crop::All => Window::all(georeference.size),
-            Crop::Rectangle(from, to) => Window::of_map(&georeference, from, to).ok_or(ConversionError::Outside)?,
-        };
-        let maxima = maxima.finish(&arrival).ok_or_else(all_dry)?;
-        let current = current.finish(&arrival, &maxima.depth);
-        check_depths(&maxima.depth, options)?;
-        Ok(Self { arrival, maxima, current, amounts, window })
-    }
-}
-
-fn check_depths(depths: &Grid<f32>, options: &Options) -> Result<(), ConversionError> {
-    let depth = depths.values().iter().copied().fold(0.0, f32::max);
-    if f64::from(depth) <= deepest(options.precision, options.arrival.threshold) {
-        return Ok(());
-    }
-    // A little more, so that the number can be printed with two digits and taken as it stands.
-    Err(ConversionError::TooDeep { depth, needed: 1.06 * f64::from(depth) / f64::from(u16::MAX) })
 }
 
 fn manifest(source: &Source, maps: &Gathered, options: &Options) -> Manifest {

@@ -14,102 +14,29 @@
 //! and wet, so that interpolation between steps is the same as with the model's own numbers. Other values err by half of
 //! their scale, 1 / 131 068 of the picture's range; arrivals are rounded up by less than 1 / 65 534.
 
+mod error;
 mod manifest;
 mod picture;
 mod writer;
 
 use std::fs;
-use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::sync::OnceLock;
 
-use freshet_hydro::grid::{Grid, GridError};
-use glam::{UVec2, Vec3};
+use freshet_hydro::grid::Grid;
+use glam::Vec3;
 use serde::Deserialize;
-use thiserror::Error;
 
 use crate::arrival::ArrivalMap;
-use crate::flow_map::{Defaults, FlowMap, FlowMapError};
+use crate::flow_map::{Defaults, FlowMap};
 use crate::georeference::Georeference;
 use crate::interpolation::{Interval, quantity_at};
 use crate::step::{Quantity, Step};
+pub use error::MapsError;
 pub use manifest::{Entry, FILE, Manifest, Map, Picture, Smoothing, Sources, VERSION};
 use picture::Scale;
 pub(crate) use picture::deepest;
 pub use writer::MapsWriter;
-
-/// Why a flood cannot be read or written.
-#[derive(Debug, Error)]
-pub enum MapsError {
-    /// A file or folder cannot be opened, read or written.
-    #[error("{}: {source}", .path.display())]
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system reported.
-        source: io::Error,
-    },
-    /// The manifest is not what it should be.
-    #[error("{}: {reason}", .path.display())]
-    Manifest {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong, and where.
-        reason: String,
-    },
-    /// The manifest is of another version.
-    #[error("{}: expected version {VERSION}, found {found}: convert the flood anew", .path.display())]
-    Version {
-        /// The file.
-        path: PathBuf,
-        /// Its version.
-        found: u32,
-    },
-    /// A picture is not what it should be.
-    #[error("{}: {reason}", .path.display())]
-    Picture {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: String,
-    },
-    /// A picture is of another size.
-    #[error("{}: expected {} × {} pixels, found {} × {}", .path.display(), .expected.x, .expected.y, .found.x, .found.y)]
-    Size {
-        /// The file.
-        path: PathBuf,
-        /// Columns and rows that it has.
-        found: UVec2,
-        /// Columns and rows that the manifest says.
-        expected: UVec2,
-    },
-    /// The flow map cannot be read or written.
-    #[error(transparent)]
-    Flow(#[from] FlowMapError),
-    /// The size or the cells are no grid's.
-    #[error(transparent)]
-    Grid(#[from] GridError),
-    /// The flood was converted without this.
-    #[error("{}: this flood was converted without {what}", .folder.display())]
-    Missing {
-        /// The folder.
-        folder: PathBuf,
-        /// What was asked for.
-        what: String,
-    },
-    /// There is no such step.
-    #[error("there is no step {0}: this flood has {1}, counted from 0")]
-    NoStep(usize, usize),
-    /// Something else is where the flood should be written.
-    #[error("{}: is there already and is no flood; remove it or choose another folder", .0.display())]
-    InTheWay(PathBuf),
-}
-
-impl MapsError {
-    fn io(path: &Path, source: io::Error) -> Self {
-        Self::Io { path: path.into(), source }
-    }
-}
 
 /// What pixel 0 of a step's picture means.
 fn empty_of(quantity: Quantity) -> f32 {
