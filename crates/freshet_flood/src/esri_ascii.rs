@@ -10,20 +10,28 @@
 //! 7.19 7.27 7.40 …        rows from north to south, each from west to east
 //! ```
 //! Programs write many variants. Read here are: keys in any case and order, with leading blanks; the lower-left corner or
-//! the centre of the lower-left cell (`XLLCENTER`, `YLLCENTER`), mixed too; `DX` and `DY`, if equal, for `CELLSIZE`; no
-//! `NODATA_VALUE` (then it is −9999); integers, decimals with point or comma, exponents, and `nan` for no data; line
-//! ends of any system and anywhere among the values; a UTF-8 byte-order mark.
+//! the centre of the lower-left cell (`XLLCENTER`, `YLLCENTER`), mixed too; `DX`, alone or with an equal `DY`, for
+//! `CELLSIZE`; no `NODATA_VALUE` (then it is −9999); integers, decimals with point or comma, exponents, and `nan` for no
+//! data; line ends of any system and anywhere among the values; a UTF-8 byte-order mark; files packed by gzip.
 
+mod header;
 mod parser;
 
 use std::fmt;
 use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::io::Read;
+use std::path::Path;
 
 use freshet_hydro::grid::Grid;
 use glam::{DVec2, Vec2};
-use thiserror::Error;
+
+use crate::raster::Raster;
+use crate::text;
+
+pub use crate::text::{Fault, ParseError, TextError as EsriError};
+
+pub(crate) use header::is_key;
+pub(crate) use parser::{read_georeference, read_raster};
 
 /// The value that marks a cell without data if the file does not say.
 const USUAL_NO_DATA: f32 = -9999.0;
@@ -38,50 +46,24 @@ pub struct EsriGrid {
     pub grid: Grid<f32>,
 }
 
-/// Why an ESRI ASCII grid cannot be read or written.
-#[derive(Debug, Error)]
-pub enum EsriError {
-    /// The file cannot be opened, read or written.
-    #[error("{}: {source}", .path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the system reported.
-        source: io::Error,
-    },
-    /// The text is not an ESRI ASCII grid.
-    #[error("{}, {source}", .path.display())]
-    Parse {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong where.
-        source: ParseError,
-    },
-}
-
-/// Where a text stops being an ESRI ASCII grid.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("line {line}: expected {expected}, found {found}")]
-pub struct ParseError {
-    /// The line, counted from 1.
-    pub line: usize,
-    /// What should stand there.
-    pub expected: String,
-    /// What stands there.
-    pub found: String,
-}
-
 impl EsriGrid {
-    /// Reads a file.
+    /// Reads a file, packed by gzip or not.
     ///
     /// # Errors
     /// [`EsriError`], with the file's name, if it cannot be opened or is not an ESRI ASCII grid.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, EsriError> {
-        let path = path.as_ref().to_path_buf();
-        match fs::read(&path) {
-            Err(source) => Err(EsriError::Io { path, source }),
-            Ok(text) => Self::parse(&text).map_err(|source| EsriError::Parse { path, source }),
-        }
+        let path = path.as_ref();
+        let read = text::plain(path).map_err(Fault::Io).and_then(Self::read_from);
+        read.map_err(|fault| EsriError::new(path, fault))
+    }
+
+    /// Reads the contents of a file from wherever they come. Memory holds the grid and a small part of the text; room for
+    /// the grid is made as its values come, whatever the header claims.
+    ///
+    /// # Errors
+    /// [`Fault`] if the stream breaks off, or as for [`EsriGrid::parse`].
+    pub fn read_from(source: impl Read) -> Result<Self, Fault> {
+        Ok(read_raster(source)?.into())
     }
 
     /// Reads the contents of a file.
@@ -90,7 +72,13 @@ impl EsriGrid {
     /// [`ParseError`] if a key of the header is missing, unknown, doubled or out of range, if DX and DY differ, or if
     /// there are not exactly as many finite numbers as the header says.
     pub fn parse(text: &[u8]) -> Result<Self, ParseError> {
-        parser::parse(text)
+        Self::read_from(text).map_err(|fault| match fault {
+            Fault::Parse(error) => error,
+            Fault::Io(error) => {
+                let expected = "a text in memory".into();
+                ParseError { line: 1, column: 1, expected, found: error.to_string() }
+            }
+        })
     }
 
     /// Writes a file that [`EsriGrid::read`] turns into the same grid again.
@@ -116,6 +104,12 @@ impl EsriGrid {
 
     fn centre(&self) -> DVec2 {
         self.corner + self.grid.size().as_dvec2() * f64::from(self.grid.cell_size()) / 2.0
+    }
+}
+
+impl From<Raster> for EsriGrid {
+    fn from(raster: Raster) -> Self {
+        Self { corner: raster.georeference.corner, grid: raster.grid }
     }
 }
 

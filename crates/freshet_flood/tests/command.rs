@@ -97,3 +97,103 @@ fn errors_go_to_stderr_and_name_things() {
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8(output.stderr).unwrap().contains("no_such.asc: No such file"));
 }
+
+fn info(path: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_freshet-flood")).arg("info").arg(path).args(arguments).output().unwrap()
+}
+
+/// What `info` prints, with single blanks.
+fn told(path: &Path, arguments: &[&str]) -> String {
+    let output = info(path, arguments);
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n").collect()
+}
+
+#[test]
+fn info_tells_what_a_raster_is() {
+    let text = told(&canal("info.asc"), &[]);
+    let expected = "format ESRI ASCII grid\nsize 40 × 20 cells of 1\nplace (1000, 2000) to (1040, 2020)\n\
+                    data in 800 of 800 cells, above zero in 320\nvalues -1 to 3\n";
+    assert_eq!(text, expected);
+}
+
+const INCREMENTAL: &str = "\
+INC1.0
+MAIN DIMENSIONS MMAX NMAX
+2 1
+GRID DX DY X0 Y0
+2 2 11 21
+START TIME T0: 2011.01.01 00:00:00
+CLASSES OF INCREMENTAL FILE H C
+0.5 -999
+1 0.25
+ENDCLASSES
+0.0 0 1 1
+1 1 1
+0.5 0 1 1
+1 1 2
+2 1 0
+0.5 0 2 1
+1 1 2
+";
+
+#[test]
+fn info_tells_what_an_incremental_file_is() {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("info.inc");
+    std::fs::write(&path, INCREMENTAL).unwrap();
+    let expected = "format incremental file of Sobek\nstart 2011.01.01 00:00:00\n\
+                    classes of depth: 0.5 1\nclasses of speed: 0.25\n\
+                    size 2 × 1 cells of 2\nplace (10, 20) to (14, 22)\nsteps 2, the last at 0:30:00\n\
+                    time quantity cells above 0 least most volume m³\n\
+                    0:00:00 depth 1 1 0.500 0.500 2\n\
+                    0:30:00 depth 2 1 0.000 1.000 4\n\
+                    0:30:00 speed 1 1 0.250 0.250\n";
+    assert_eq!(told(&path, &[]), expected);
+}
+
+#[test]
+fn info_tells_what_a_folder_holds() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("info");
+    std::fs::create_dir_all(&folder).unwrap();
+    for (file, value) in [("tiefe2", 0.5), ("tiefe10", 1.5), ("salz2", 9.0)] {
+        let grid = Grid::new(uvec2(2, 1), 2.0, vec![value, f32::NAN]).unwrap();
+        EsriGrid { corner: dvec2(0.0, 0.0), grid }.write(folder.join(file).with_extension("asc")).unwrap();
+    }
+    let text = told(&folder, &["--series", "tiefe=depth", "--interval", "1.5h"]);
+    assert!(text.contains("left out ") && text.contains("salz2.asc\n"), "{text}");
+    assert!(text.contains("steps 2, the last at 1:30:00\n"), "{text}");
+    assert!(text.contains("0:00:00 depth 1 1 0.500 0.500 2\n1:30:00 depth 1 1 1.500 1.500 6\n"), "{text}");
+    let text = told(&folder, &["--series", "tiefe=depth"]);
+    assert!(text.contains("times unknown: --interval or --times gives them\nsteps 2\nstep quantity"), "{text}");
+    assert!(text.contains("0 depth 1 1 0.500 0.500 2\n1 depth 1 1 1.500"), "{text}");
+    let table = folder.join("times.csv");
+    std::fs::write(&table, "step,time\n2,1min\n10,2min\n").unwrap();
+    let text = told(&folder, &["--series", "tiefe=depth", "--times", table.to_str().unwrap()]);
+    assert!(text.contains("0:02:00 depth"), "{text}");
+}
+
+#[test]
+fn info_fails_with_one_for_bad_data_and_two_for_bad_usage() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let torn = folder.join("info_torn.inc");
+    std::fs::write(&torn, format!("{INCREMENTAL}2 1")).unwrap();
+    let torn = torn.as_path();
+    for (path, arguments, code, expected) in [
+        (torn, vec![], 1, "info_torn.inc, line 18, column 1: expected three or four numbers on a line, found 2"),
+        (&folder.join("no_such.asc"), vec![], 1, "no_such.asc: No such file"),
+        (torn, vec!["--interval", "soon"], 2, "expected a duration such as 90, 90s, 30min, 1.5h or 1d, found “soon”"),
+        (torn, vec!["--series", "dm"], 2, "expected PREFIX=QUANTITY"),
+        (torn, vec!["--series", "dm=mud"], 2, "expected depth, speed, level, east or north, found “mud”"),
+        (torn, vec!["--interval", "1h", "--times", "times.csv"], 2, "cannot be used with"),
+    ] {
+        let output = info(path, &arguments);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{message}");
+        assert!(message.contains(expected), "{message}");
+        assert_eq!(message.matches("expected three or four").count(), usize::from(expected.contains("three or four")));
+        assert!(output.stdout.is_empty());
+    }
+    let help = String::from_utf8(info(torn, &["--help"]).stdout).unwrap();
+    assert!(help.contains("freshet-flood info flood.inc"), "{help}");
+}

@@ -2,6 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test ends where something is wrong")]
 
+use std::io::{self, Read, Write};
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use freshet_flood::esri_ascii::{EsriError, EsriGrid};
 use freshet_hydro::grid::Grid;
 use glam::{DVec2, UVec2, dvec2, uvec2, vec2};
@@ -39,6 +43,7 @@ fn every_spelling_gives_the_same_grid() {
         HEADER.replace("xllcorner 10", "xllcenter 11").replace("yllcorner 20", "YLLCENTER 21") + values,
         HEADER.replace("xllcorner 10", "XLLCenter 11") + values,
         HEADER.replace("cellsize 2", "DX 2\nDY 2.0") + values,
+        HEADER.replace("cellsize 2", "dx 2") + values,
         // Decimal commas.
         HEADER.replace("cellsize 2", "cellsize 2,0") + "1,0 -2,5 -9999,0 4,0e2 0 6",
         // No data by other names.
@@ -62,55 +67,119 @@ fn rows_run_from_north_to_south() {
 }
 
 #[test]
-fn errors_name_line_expectation_and_finding() {
+fn errors_name_line_column_expectation_and_finding() {
     let keys = "ncols, nrows, xllcorner, yllcorner, xllcenter, yllcenter, cellsize, dx, dy, nodata_value";
     for (text, expected) in [
         (
             String::new(),
-            "line 1: expected the header to give cellsize (or dx and dy), found none before the first value",
+            "line 1, column 1: expected the header to give cellsize (or dx and dy), found none before the first value",
         ),
         (
             format!("{HEADER}1 2 3\n4 5"),
-            "line 7: expected 6 values (3 columns × 2 rows), found the end of the file after 5",
+            "line 7, column 4: expected 6 values (3 columns × 2 rows), found the end of the file after 5",
         ),
-        (format!("{HEADER}1 2 3\n4 5 6\n7"), "line 8: expected the end of the file after 6 values (3 × 2), found “7”"),
-        (format!("{HEADER}1 2 x3\n4 5 6"), "line 6: expected a number, found “x3”"),
-        (format!("{HEADER}1 2 1e99"), "line 6: expected a finite number, found “1e99”"),
-        (format!("{HEADER}0 1.000,5"), "line 6: expected a number, found “1.000,5”"),
-        (HEADER.replace("ncols 3", "ncols 0"), "line 1: expected a whole number from 1 to 4294967295, found “0”"),
-        (HEADER.replace("nrows 2", "nrows 2.5"), "line 2: expected a whole number from 1 to 4294967295, found “2.5”"),
-        (HEADER.replace("nrows 2", "nrows -2"), "line 2: expected a whole number from 1 to 4294967295, found “-2”"),
+        (
+            format!("{HEADER}1 2 3\n4 5 6\n7"),
+            "line 8, column 1: expected the end of the file after 6 values (3 × 2), found “7”",
+        ),
+        (format!("{HEADER}1 2 x3\n4 5 6"), "line 6, column 5: expected a number, found “x3”"),
+        (format!("{HEADER}1 2 1e99"), "line 6, column 5: expected a finite number, found “1e99”"),
+        (format!("{HEADER}0 1.000,5"), "line 6, column 3: expected a number, found “1.000,5”"),
+        (
+            HEADER.replace("ncols 3", "ncols 0"),
+            "line 1, column 7: expected a whole number from 1 to 4294967295, found “0”",
+        ),
+        (
+            HEADER.replace("nrows 2", "nrows 2.5"),
+            "line 2, column 7: expected a whole number from 1 to 4294967295, found “2.5”",
+        ),
+        (
+            HEADER.replace("nrows 2", "nrows -2"),
+            "line 2, column 7: expected a whole number from 1 to 4294967295, found “-2”",
+        ),
         (
             HEADER.replace("nrows 2\n", ""),
-            "line 5: expected the header to give nrows, found none before the first value",
+            "line 5, column 1: expected the header to give nrows, found none before the first value",
         ),
         (
             HEADER.replace("yllcorner 20\n", ""),
-            "line 5: expected the header to give yllcorner (or yllcenter), found none before the first value",
+            "line 5, column 1: expected the header to give yllcorner (or yllcenter), found none before the first value",
         ),
-        (HEADER.replace("cellsize 2", "cellsize -2"), "line 5: expected a cell size above zero, found “-2”"),
+        (HEADER.replace("cellsize 2", "cellsize -2"), "line 5, column 10: expected a cell size above zero, found “-2”"),
         (
             HEADER.replace("cellsize 2", "cellsize"),
-            "line 6: expected a finite number for cellsize, found the end of the file",
+            "line 6, column 1: expected a finite number for cellsize, found the end of the file",
         ),
         (
             HEADER.replace("cellsize 2", "dx 2\ndy 3"),
-            "line 6: expected dy equal to dx, for cells are squares here, found “3”",
+            "line 6, column 4: expected dy equal to dx, for cells are squares here, found “3”",
         ),
         (
-            HEADER.replace("cellsize 2", "dx 2"),
-            "line 6: expected the header to give cellsize (or dx and dy), found none before the first value",
+            HEADER.replace("cellsize 2", "dy 2"),
+            "line 6, column 1: expected the header to give cellsize (or dx and dy), found none before the first value",
         ),
-        (format!("{HEADER}dx 2\n"), "line 6: expected either cellsize or dx and dy, not both, found “2”"),
-        (format!("{HEADER}xllcenter 2\n"), "line 6: expected xllcorner or xllcenter, not both, found “2”"),
-        (format!("{HEADER}NCOLS 3\n"), "line 6: expected ncols only once, found “NCOLS”"),
+        (format!("{HEADER}dx 2\n"), "line 6, column 4: expected either cellsize or dx and dy, not both, found “2”"),
+        (format!("{HEADER}xllcenter 2\n"), "line 6, column 11: expected xllcorner or xllcenter, not both, found “2”"),
+        (format!("{HEADER}NCOLS 3\n"), "line 6, column 1: expected ncols only once, found “NCOLS”"),
         (
             format!("{HEADER}ncells 3\n"),
-            &format!("line 6: expected a number or one of the keys {keys}, found “ncells”"),
+            &format!("line 6, column 1: expected a number or one of the keys {keys}, found “ncells”"),
         ),
     ] {
         assert_eq!(message(&text), expected, "{text:?}");
     }
+}
+
+#[test]
+fn a_file_packed_by_gzip_is_read_whatever_its_name() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("packed.asc");
+    let file = std::fs::File::create(&path).unwrap();
+    let mut packer = GzEncoder::new(file, Compression::default());
+    packer.write_all(format!("{HEADER}1 2 3 4 5 6").as_bytes()).unwrap();
+    packer.finish().unwrap();
+    let read = EsriGrid::read(&path).unwrap();
+    assert_eq!(read.grid.values(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    // What is torn off is told, with the file's name.
+    let bytes = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &bytes[..bytes.len() - 12]).unwrap();
+    let error = EsriGrid::read(&path).unwrap_err();
+    assert!(matches!(&error, EsriError::Io { .. }) && error.to_string().contains("packed.asc"), "{error}");
+}
+
+/// A stream that gives one byte at a time, and now and then is interrupted.
+struct Dripping<'a>(&'a [u8], bool);
+
+impl Read for Dripping<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.1 = !self.1;
+        if self.1 {
+            return Err(io::ErrorKind::Interrupted.into());
+        }
+        let most = buffer.len().min(1);
+        self.0.read(&mut buffer[..most])
+    }
+}
+
+#[test]
+fn streams_may_break_a_text_anywhere() {
+    let text = format!("\u{feff}{HEADER}1 -2.5\r\n-9999 4e2 0 6\r\n");
+    let whole = EsriGrid::parse(text.as_bytes()).unwrap();
+    let dripping = EsriGrid::read_from(Dripping(text.as_bytes(), false)).unwrap();
+    assert_eq!(whole.to_string(), dripping.to_string());
+    let error = EsriGrid::read_from(Dripping((text + "\r\n x").as_bytes(), false)).unwrap_err();
+    assert!(error.to_string().starts_with("line 9, column 2: expected the end of the file"), "{error}");
+}
+
+#[test]
+fn texts_longer_than_any_buffer_are_read_and_words_of_that_length_refused() {
+    let header = HEADER.replace("ncols 3", "ncols 1000").replace("nrows 2", "nrows 400");
+    let values: Vec<String> = (0..400_000).map(|cell| (cell % 1234).to_string()).collect();
+    let esri = EsriGrid::parse(format!("{header}{}", values.join(" ")).as_bytes()).unwrap();
+    assert!(esri.grid.values().iter().enumerate().all(|(cell, value)| *value == (cell % 1234) as f32));
+    let mut lines = values.join("\r\n");
+    lines.replace_range(lines.len() - 1.., "x");
+    assert!(message(&format!("{header}{lines}")).starts_with("line 400005, column 1: expected a number, found “"));
+    assert!(message(&format!("{HEADER}{}", "1".repeat(1 << 20))).contains("expected words of less than"));
 }
 
 #[test]
@@ -138,7 +207,10 @@ fn files_are_named_in_errors_and_written_back() {
     assert!(error.to_string().contains("no_such.asc"));
     std::fs::write(&path, "ncols x").unwrap();
     let error = EsriGrid::read(&path).unwrap_err().to_string();
-    assert!(error.ends_with("round_trip.asc, line 1: expected a finite number for ncols, found “x”"), "{error}");
+    assert!(
+        error.ends_with("round_trip.asc, line 1, column 7: expected a finite number for ncols, found “x”"),
+        "{error}"
+    );
     assert!(EsriGrid::read(folder).is_err());
 }
 
