@@ -27,15 +27,24 @@ impl Stopwatch {
     }
 }
 
-/// What floating crates cost beside the solver, on waves, alone and side by side. `cargo test … what_bodies_cost -- --ignored --nocapture`.
+/// What floating crates cost beside the solver, on waves, alone and side by side, and in simulated water, with which they exchange room and
+/// forces. `cargo test … what_bodies_cost -- --ignored --nocapture`.
 #[test]
 #[ignore = "measures"]
 fn what_bodies_cost() {
-    println!("µs per crate\n| crates | apart | {} |\n|---|---|---|---|---|---|---|", PARTS.join(" | "));
-    for (count, apart) in [(1, 1.6), (10, 1.6), (100, 1.6), (1000, 1.6), (2000, 1.6), (100, 1.0), (1000, 1.0)] {
+    println!("µs per crate\n| crates | apart | water | {} |\n|---|---|---|---|---|---|---|---|", PARTS.join(" | "));
+    let waves = [(1, 1.6), (10, 1.6), (100, 1.6), (1000, 1.6), (2000, 1.6), (100, 1.0), (1000, 1.0)];
+    let rows = waves.map(|row| (row, false)).into_iter().chain([((100, 1.6), true), ((1000, 1.6), true)]);
+    for ((count, apart), simulated) in rows {
         let mut app = app();
-        let water = (Water::new(Vec2::splat(4000.0)), WaterWaves::default(), Transform::from_xyz(0.0, LEVEL, 0.0));
-        app.world_mut().spawn(water);
+        let pose = Transform::from_xyz(0.0, LEVEL, 0.0);
+        match simulated {
+            true => {
+                let simulation = WaterSimulation { cell_size: 0.5, ..default() };
+                app.world_mut().spawn((Water::new(Vec2::splat(120.0)), WaterWaves::still(), simulation, pose))
+            }
+            false => app.world_mut().spawn((Water::new(Vec2::splat(4000.0)), WaterWaves::default(), pose)),
+        };
         app.init_resource::<Stopwatch>().add_systems(
             FixedUpdate,
             (
@@ -58,6 +67,7 @@ fn what_bodies_cost() {
         run(&mut app, 2.0);
         let parts = app.world().resource::<Stopwatch>().parts;
         let row = parts.map(|seconds| format!("{:.2}", 1e6 * seconds / (120 * count) as f64)).join(" | ");
-        println!("| {count} | {apart} m | {row} |");
+        let water = if simulated { "simulated" } else { "waves" };
+        println!("| {count} | {apart} m | {water} | {row} |");
     }
 }

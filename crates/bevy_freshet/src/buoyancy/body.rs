@@ -117,6 +117,38 @@ impl Source {
 }
 
 impl Body {
+    /// Follows the settings and what the hull is built from. False while its mesh still loads.
+    fn follow(
+        &mut self,
+        entity: Entity,
+        floating: &Floating,
+        source: Source,
+        meshes: Option<&Assets<Mesh>>,
+        buoyancy: &mut Buoyancy,
+        reported: &mut Reported,
+    ) -> bool {
+        let (model, most) = resolve_model(entity, floating, reported);
+        if source != self.source || self.made != Some((model, most)) {
+            let mut report = |flaw: Flaw| reported.warn(entity, "Floating: a shape", flaw);
+            let Some(solids) = source.solids(meshes, &mut report) else {
+                // An empty source asks again in the next step.
+                self.source = Source::None;
+                return false;
+            };
+            (self.source, self.made) = (source, Some((model, most)));
+            if let Err(problem) = self.build(solids, model, most, &mut report) {
+                reported.warn(entity, "Floating", problem);
+            }
+            match &self.form {
+                Some(form) => buoyancy.volume = form.hull.volume(),
+                None => *buoyancy = Buoyancy::default(),
+            }
+        }
+        self.drag = resolve_drag(entity, floating, reported);
+        self.mass = self.resolve_mass(entity, floating, reported);
+        true
+    }
+
     /// Makes the hull of the solids; without any there is none, and the body falls through the water.
     fn build(
         &mut self,
@@ -235,27 +267,10 @@ pub(super) fn build_hulls(
             state.source = Source::None;
         }
         let source = Source::of(body, &colliders.colliders, mesh, transform.scale());
-        let is_new = source != state.source;
-        if is_new || floating.is_changed() {
-            let (model, most) = resolve_model(entity, &floating, &mut reported);
-            if is_new || state.made != Some((model, most)) {
-                let mut report = |flaw: Flaw| reported.warn(entity, "Floating: a shape", flaw);
-                let Some(solids) = source.solids(meshes.as_deref(), &mut report) else {
-                    // The mesh still loads. An empty source asks again in the next step.
-                    state.source = Source::None;
-                    continue;
-                };
-                (state.source, state.made) = (source, Some((model, most)));
-                if let Err(problem) = state.build(solids, model, most, &mut report) {
-                    reported.warn(entity, "Floating", problem);
-                }
-                match &state.form {
-                    Some(form) => buoyancy.volume = form.hull.volume(),
-                    None => *buoyancy = Buoyancy::default(),
-                }
-            }
-            state.drag = resolve_drag(entity, &floating, &mut reported);
-            state.mass = state.resolve_mass(entity, &floating, &mut reported);
+        if (source != state.source || floating.is_changed())
+            && !state.follow(entity, &floating, source, meshes.as_deref(), &mut buoyancy, &mut reported)
+        {
+            continue;
         }
 
         // Also when a game has since given the body another mass: `Weight` decides.
