@@ -43,7 +43,9 @@ fn what_bodies_cost() {
                 let simulation = WaterSimulation { cell_size: 0.5, ..default() };
                 app.world_mut().spawn((Water::new(Vec2::splat(120.0)), WaterWaves::still(), simulation, pose))
             }
-            false => app.world_mut().spawn((Water::new(Vec2::splat(4000.0)), WaterWaves::default(), pose)),
+            false => {
+                app.world_mut().spawn((Water::new(Vec2::splat(4000.0)), WaterWaves::wind(8.0, 2000.0, Vec2::X), pose))
+            }
         };
         app.init_resource::<Stopwatch>().add_systems(
             FixedUpdate,
