@@ -26,6 +26,7 @@ mod endurance;
 mod exchange;
 mod features;
 mod fields;
+mod flood;
 mod flow;
 mod foam;
 mod glitter;

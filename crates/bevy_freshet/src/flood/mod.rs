@@ -21,6 +21,7 @@ mod play;
 mod settings;
 
 pub use freshet_flood::maps::{FloodMaps, MapsError};
+pub use play::FloodState;
 pub use settings::{Flood, FloodBedError};
 
-pub(crate) use play::{FloodPlugin, Playback};
+pub(crate) use play::FloodPlugin;

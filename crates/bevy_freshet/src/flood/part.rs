@@ -28,6 +28,13 @@ pub struct Part {
     velocities: [Vec<Vec2>; 2],
 }
 
+/// No water.
+pub fn dry(maps: &FloodMaps) -> Field {
+    let place = maps.georeference();
+    let cells = Grid::from_fn(place.size, place.cell_size as f32, |_| vec4(BANK, 0.0, 0.0, 0.0));
+    cells.map_or_else(|_| Field::default(), |cells| Field::from_cells(cells, None, 0.0))
+}
+
 impl Ground {
     fn read(maps: &FloodMaps) -> Result<Self, MapsError> {
         let manifest = maps.manifest();

@@ -1,5 +1,5 @@
 //! Plays floods: their time, and the water at it.
-use super::{Flood, FloodMaps, ahead::Ahead};
+use super::{Flood, FloodMaps, ahead::Ahead, part};
 use crate::{
     body::{Water, WaterSimulation},
     report::Reported,
@@ -10,11 +10,13 @@ use bevy::{prelude::*, render::RenderApp};
 use freshet_hydro::shallow_water::Field;
 use std::sync::Arc;
 
-/// How far a flood is played.
+/// What is shown of a [`Flood`]. Read only; beside every one.
 #[derive(Component, Default)]
-pub(crate) struct Playback {
+pub struct FloodState {
     ahead: Ahead,
     shown: Option<Shown>,
+    /// What is shown as long as nothing is there: no water.
+    dry: Option<Arc<Field>>,
     /// Whether its time is not there yet.
     is_late: bool,
 }
@@ -47,7 +49,7 @@ fn end_flood(removed: On<Remove, Flood>, mut commands: Commands, mut waters: Que
         simulated.play(None);
     }
     if let Ok(mut water) = commands.get_entity(removed.entity) {
-        water.try_remove::<(Playback, ShallowFrame)>();
+        water.try_remove::<(FloodState, ShallowFrame)>();
     }
 }
 
@@ -58,7 +60,7 @@ type Played = (With<Water>, Without<WaterSimulation>);
 fn advance(
     time: Res<Time>,
     mut reported: ResMut<Reported>,
-    mut floods: Query<(Entity, &mut Flood, &Playback, Has<WaterSimulation>), With<Water>>,
+    mut floods: Query<(Entity, &mut Flood, &FloodState, Has<WaterSimulation>), With<Water>>,
 ) {
     for (entity, mut flood, playback, is_simulated) in &mut floods {
         if is_simulated {
@@ -75,7 +77,7 @@ fn show(
     time: Res<Time>,
     mut commands: Commands,
     mut reported: ResMut<Reported>,
-    mut floods: Query<(Entity, &Flood, &Water, &mut Playback, Option<&mut Simulated>), Played>,
+    mut floods: Query<(Entity, &Flood, &Water, &mut FloodState, Option<&mut Simulated>), Played>,
 ) {
     for (entity, flood, water, mut playback, simulated) in &mut floods {
         let (Some(mut simulated), Some(maps)) = (simulated, flood.maps()) else {
@@ -91,11 +93,36 @@ fn show(
             reported.warn(entity, "Water::size", format_args!("is {found}, that of its Flood {expected}"));
         }
         playback.show(entity, flood, maps, factor, time.delta_secs_f64(), &mut reported);
-        simulated.play(playback.shown.as_ref().map(|shown| shown.field.clone()));
+        simulated.play(Some(playback.water(maps)));
     }
 }
 
-impl Playback {
+impl FloodState {
+    /// Time of what is shown, s in the data; `None` until the first steps are there.
+    pub fn time(&self) -> Option<f64> {
+        self.shown.as_ref().map(|shown| shown.time)
+    }
+
+    /// Level, depth and velocity of every cell as they are shown, [`Flood::exaggeration`] times as high.
+    pub fn field(&self) -> Option<&Arc<Field>> {
+        self.shown.as_ref().map(|shown| &shown.field)
+    }
+
+    /// Whether the water of the flood's time is not there yet.
+    pub fn is_late(&self) -> bool {
+        self.is_late
+    }
+
+    /// The water that is shown.
+    fn water(&mut self, maps: &FloodMaps) -> Arc<Field> {
+        if let Some(shown) = &self.shown {
+            return shown.field.clone();
+        }
+        let size = maps.georeference().size;
+        let dry = self.dry.take().filter(|dry| dry.size() == size).unwrap_or_else(|| Arc::new(part::dry(maps)));
+        self.dry.insert(dry).clone()
+    }
+
     /// Makes the water of the flood's time, if that is not shown already; the last frame or fixed step was `elapsed` (s) ago.
     fn show(
         &mut self,

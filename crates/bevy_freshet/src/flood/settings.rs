@@ -1,5 +1,5 @@
 //! What of a flood is played, and how.
-use super::{FloodMaps, MapsError, Playback};
+use super::{FloodMaps, FloodState, MapsError};
 use crate::{
     body::{Water, WaterBed, WaterBedError, WaterFoam, WaterOptics, WaterWaves},
     simulation::Simulated,
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// velocity from the arrival map.
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(Component, Clone, Debug)]
-#[require(Playback, Simulated)]
+#[require(FloodState, Simulated)]
 pub struct Flood {
     #[reflect(ignore, default = "no_maps")]
     maps: Option<Arc<FloodMaps>>,
@@ -66,12 +66,12 @@ impl Flood {
         )
     }
 
-    /// The ground under the flood.
+    /// The ground under the flood; where the terrain has no data it goes on smoothly, and stays dry.
     ///
     /// # Errors
     /// [`FloodBedError`] if the flood was converted without a terrain, or it cannot be read.
     pub fn bed(maps: &FloodMaps) -> Result<WaterBed, FloodBedError> {
-        Ok(WaterBed::new(maps.terrain()?)?)
+        Ok(WaterBed::new(maps.terrain()?)?.filled(f32::MIN))
     }
 
     /// Length of a flood along x (east) and z (south), m.
