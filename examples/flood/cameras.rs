@@ -25,7 +25,7 @@ pub fn orbit(name: Option<&str>, viewer: &Viewer) -> Result<OrbitCamera, String>
         "slope" => Ok(OrbitCamera { elevation: 0.65, azimuth: 0.45, ..usual }),
         "top" => Ok(OrbitCamera { elevation: 1.55, azimuth: 0.0, distance: 1.25 * extent.y, ..usual }),
         "plain" => {
-            let place = vec2(-0.05 * extent.x, -0.1 * extent.y);
+            let place = vec2(0.15 * extent.x, -0.05 * extent.y);
             let target = vec3(place.x, height(place), place.y);
             Ok(OrbitCamera { target, distance: 0.14 * extent.y, elevation: 0.3, azimuth: 0.3, ..usual })
         }

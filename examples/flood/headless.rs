@@ -100,7 +100,7 @@ fn show(app: &mut App, time: f64, frame: Duration) {
     let world = app.world_mut();
     let path = world.remove_resource::<CameraPath>();
     if let Some(path) = &path {
-        let mut cameras = world.query_filtered::<(&mut Transform, &mut OrbitCamera), With<Camera3d>>();
+        let mut cameras = world.query::<(&mut Transform, &mut OrbitCamera)>();
         for (mut pose, mut orbit) in cameras.iter_mut(world) {
             orbit.enabled = false;
             *pose = path.at(time);

@@ -2,7 +2,7 @@
 use crate::viewer::{Viewer, clock};
 use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContexts, egui, input::EguiWantsInput};
-use bevy_freshet::flood::FloodState;
+use bevy_freshet::{flood::FloodState, panel::OrbitCamera};
 
 /// The ground that is seen at a place of the picture, world.
 pub fn ground(camera: &Camera, pose: &GlobalTransform, at: Vec2, viewer: &Viewer) -> Option<Vec3> {
@@ -35,7 +35,7 @@ pub fn tell(
     wants: Res<EguiWantsInput>,
     viewer: Res<Viewer>,
     window: Single<&Window, With<PrimaryWindow>>,
-    camera: Single<(&Camera, &GlobalTransform), With<Camera3d>>,
+    camera: Single<(&Camera, &GlobalTransform), With<OrbitCamera>>,
     state: Single<&FloodState>,
 ) -> Result {
     let Some(at) = window.cursor_position().filter(|_| !wants.wants_pointer_input()) else { return Ok(()) };

@@ -48,8 +48,8 @@ pub fn setup(
 ) {
     let tints = tints(&viewer.terrain);
     let shaded = shaded(&viewer.terrain, &tints);
-    let lit = images.add(picture(&viewer.terrain, &tints));
-    let picture = images.add(picture(&viewer.terrain, &shaded));
+    let lit = images.add(picture(&viewer.terrain, &shaded, ImageSampler::linear()));
+    let picture = images.add(picture(&viewer.terrain, &shaded, ImageSampler::nearest()));
     let extent = viewer.terrain.extent();
     let material = |texture: &Handle<Image>, unlit: bool| StandardMaterial {
         base_color_texture: Some(texture.clone()),
@@ -152,13 +152,13 @@ pub fn paint(
     drape.painted = Some((time, viewer.coloring));
 }
 
-fn picture(terrain: &Grid<f32>, pixels: &[[u8; 4]]) -> Image {
+fn picture(terrain: &Grid<f32>, pixels: &[[u8; 4]], sampler: ImageSampler) -> Image {
     let size = terrain.size();
     let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
     let usages = RenderAssetUsages::all();
     let format = TextureFormat::Rgba8UnormSrgb;
     let mut image = Image::new(extent, TextureDimension::D2, pixels.concat(), format, usages);
-    image.sampler = ImageSampler::nearest();
+    image.sampler = sampler;
     image
 }
 

@@ -150,14 +150,14 @@ fn play(arguments: Res<Arguments>, mut flood: Single<&mut Flood>) {
 fn light(mut commands: Commands, canvas: Res<Canvas>, viewer: Res<Viewer>, orbit: OrbitCamera) {
     let farthest = 2.5 * viewer.terrain.extent().max_element();
     let cascades = CascadeShadowConfigBuilder { maximum_distance: farthest, ..default() }.build();
-    // In the south-west, as low as in the morning: hills cast shadows.
-    let sky = Sky { sun_azimuth: 4.0, ..default() };
+    // In the south-west.
+    let sky = Sky { sun_azimuth: 4.0, sun_elevation: 0.7, ..default() };
     commands.spawn((sky, DirectionalLight { shadow_maps_enabled: true, ..default() }, cascades));
     commands.spawn((
         Camera3d::default(),
         (Hdr, Msaa::Off, PrimaryEguiContext),
         Projection::Perspective(PerspectiveProjection { far: 20.0 * farthest, ..default() }),
-        SkyView::default(),
+        SkyView { exposure: Some(0.6), ..default() },
         canvas.target(),
         orbit.pose(),
         orbit,
@@ -165,7 +165,7 @@ fn light(mut commands: Commands, canvas: Res<Canvas>, viewer: Res<Viewer>, orbit
 }
 
 /// Under a colouring the water is not drawn, and colours are those of the legend.
-fn show_water(mut commands: Commands, viewer: Res<Viewer>, cameras: Query<(Entity, Has<NoWater>), With<Camera3d>>) {
+fn show_water(mut commands: Commands, viewer: Res<Viewer>, cameras: Query<(Entity, Has<NoWater>), With<OrbitCamera>>) {
     for (camera, without) in &cameras {
         match viewer.coloring {
             Coloring::Water if without => {

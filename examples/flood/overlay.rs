@@ -5,7 +5,7 @@ use bevy_egui::{
     EguiContexts,
     egui::{Align2, Color32, FontId, LayerId, Mesh, Order, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2 as size},
 };
-use bevy_freshet::{flood::Flood, surface::ViewScale};
+use bevy_freshet::{flood::Flood, panel::OrbitCamera, surface::ViewScale};
 
 const INK: Color32 = Color32::WHITE;
 const SHADE: Color32 = Color32::from_black_alpha(150);
@@ -19,7 +19,7 @@ pub fn draw(
     mut contexts: EguiContexts,
     viewer: Res<Viewer>,
     flood: Single<&Flood>,
-    camera: Single<(&Camera, &GlobalTransform), With<Camera3d>>,
+    camera: Single<(&Camera, &GlobalTransform), With<OrbitCamera>>,
 ) -> Result {
     let context = contexts.ctx_mut()?;
     let painter = context.layer_painter(LayerId::new(Order::Background, "overlay".into()));

@@ -129,13 +129,17 @@ pub fn percentile(mut values: Vec<f32>, share: f32) -> f32 {
     values.get(index as usize).copied().unwrap_or_default()
 }
 
-/// The next of 1, 2 and 5 times a power of ten.
+/// The next round number: one digit that divides well, or 15, times a power of ten.
 pub fn round(value: f32) -> f32 {
     if value <= 0.0 || !value.is_finite() {
         return 1.0;
     }
     let power = 10_f32.powf(value.log10().floor());
-    [1.0, 2.0, 5.0].map(|digit| digit * power).into_iter().find(|round| *round >= value * 0.999).unwrap_or(10.0 * power)
+    [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]
+        .map(|digit| digit * power)
+        .into_iter()
+        .find(|round| *round >= value * 0.999)
+        .unwrap_or(10.0 * power)
 }
 
 /// A time as h:mm:ss.

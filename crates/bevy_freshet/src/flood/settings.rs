@@ -1,7 +1,7 @@
 //! What of a flood is played, and how.
 use super::{FloodMaps, FloodState, MapsError};
 use crate::{
-    body::{Water, WaterBed, WaterBedError, WaterFoam, WaterOptics, WaterWaves},
+    body::{Water, WaterBed, WaterBedError, WaterFoam, WaterInteraction, WaterOptics, WaterWaves},
     simulation::Simulated,
 };
 use bevy::prelude::*;
@@ -54,14 +54,17 @@ impl Flood {
         }
     }
 
-    /// A muddy water without waves that is as large as the flood and plays it. Its foam is born at the front.
+    /// A muddy water without waves that is as large as the flood and plays it. Its foam is born at the front, on four cells for each
+    /// cell of the flood along an axis.
     pub fn water(maps: &Arc<FloodMaps>) -> impl Bundle + use<> {
+        let cell = (maps.georeference().cell_size as f32 / 4.0).clamp(0.1, 100.0);
         (
             Water::new(Self::size(maps)),
             WaterOptics::MUDDY,
             WaterWaves::still(),
+            WaterInteraction { cell, wavelength: (6.0 * cell).max(1.2), ..default() },
             // Fronts run together more slowly than rivers do; the shallow rim of what stands is no front.
-            WaterFoam { shore: 0.0, breaking_threshold: 0.05, ..default() },
+            WaterFoam { shore: 0.0, breaking_threshold: 0.1, pattern_size: (2.0 * cell).max(1.5), ..default() },
             Self::new(maps.clone()),
         )
     }
