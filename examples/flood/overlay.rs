@@ -97,11 +97,10 @@ fn ramp(painter: &Painter, bar: Rect) {
     painter.add(mesh);
 }
 
-/// An arrow to the north as it lies in the picture.
+/// An arrow to the north; up is where the camera looks.
 fn north(painter: &Painter, pose: &GlobalTransform, middle: Pos2) {
-    // North in the camera's frame, as it is seen from above.
-    let in_view = pose.rotation().inverse() * Vec3::NEG_Z;
-    let along = vec2(in_view.x, -in_view.y).normalize_or(Vec2::NEG_Y);
+    let right = pose.right().xz().normalize_or(Vec2::X);
+    let along = vec2(-right.y, -right.x);
     let flat = size(along.x, along.y);
     let side = size(-flat.y, flat.x);
     let tip = middle + 18.0 * flat;
