@@ -20,7 +20,7 @@ pub const NAMES: [&str; 3] = ["slope", "top", "plain"];
 pub fn orbit(name: Option<&str>, viewer: &Viewer) -> Result<OrbitCamera, String> {
     let extent = viewer.terrain.extent();
     let height = |place: Vec2| viewer.terrain.sample(place) * viewer.exaggeration;
-    let usual = OrbitCamera { target: Vec3::Y * height(Vec2::ZERO), distance: 0.95 * extent.y, ..default() };
+    let usual = OrbitCamera { target: Vec3::Y * height(Vec2::ZERO), distance: 1.15 * extent.y, ..default() };
     match name.unwrap_or(NAMES[0]) {
         "slope" => Ok(OrbitCamera { elevation: 0.65, azimuth: 0.45, ..usual }),
         "top" => Ok(OrbitCamera { elevation: 1.55, azimuth: 0.0, distance: 1.25 * extent.y, ..usual }),

@@ -49,6 +49,11 @@ impl Ahead {
         }
     }
 
+    /// Whether a part cannot be read.
+    pub fn has_failed(&self, index: usize) -> bool {
+        self.failed.contains(&index)
+    }
+
     fn has(&self, index: usize) -> bool {
         self.parts.iter().any(|part| part.index == index)
     }

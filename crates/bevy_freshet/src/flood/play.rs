@@ -7,6 +7,7 @@ use crate::{
     simulation::{ShallowFrame, Simulated},
 };
 use bevy::{prelude::*, render::RenderApp};
+use freshet_flood::flow_map::MOST_CELLS;
 use freshet_hydro::shallow_water::Field;
 use std::sync::Arc;
 
@@ -80,7 +81,9 @@ fn show(
     mut floods: Query<(Entity, &Flood, &Water, &mut FloodState, Option<&mut Simulated>), Played>,
 ) {
     for (entity, flood, water, mut playback, simulated) in &mut floods {
-        let (Some(mut simulated), Some(maps)) = (simulated, flood.maps()) else {
+        let Some(maps) = flood.maps() else { continue };
+        let Some(mut simulated) = simulated else {
+            // It went with a simulation.
             commands.entity(entity).try_insert(Simulated::default());
             continue;
         };
@@ -134,34 +137,29 @@ impl FloodState {
         reported: &mut Reported,
     ) {
         let time = flood.usable_time();
-        let before = self.shown.take_if(|shown| !Arc::ptr_eq(&shown.maps, maps));
-        drop(before);
-        let is_shown = |shown: &Shown| shown.time == time && shown.factor == factor;
+        if self.shown.as_ref().is_some_and(|shown| !Arc::ptr_eq(&shown.maps, maps)) {
+            self.shown = None;
+        }
         let parts = around(maps, time, flood);
-        let part = self.ahead.part(maps, parts, flood.waits);
-        if self.shown.as_ref().is_some_and(is_shown) {
+        let part = self.ahead.part(maps, parts, flood.waits).unwrap_or_else(|error| {
+            reported.warn(entity, "Flood", format_args!("cannot be read: {error}"));
+            None
+        });
+        if self.shown.as_ref().is_some_and(|shown| shown.time == time && shown.factor == factor) {
             self.is_late = false;
             return;
         }
-        match part {
-            Ok(Some(part)) => {
-                // A jump is no rise.
-                let is_steady = |shown: &&Shown| {
-                    let most = f64::from(flood.speed.abs()) * elapsed * 1.5;
-                    flood.playing && shown.factor == factor && (shown.time - time).abs() <= most
-                };
-                let before = self.shown.as_ref().filter(is_steady).map(|shown| (&*shown.field, elapsed));
-                let field = Arc::new(part.at(time, factor, before));
-                self.shown = Some(Shown { maps: maps.clone(), time, factor, field });
-                self.is_late = false;
-            }
-            Ok(None) => self.is_late = true,
-            Err(error) => {
-                // What cannot be read is passed over; what was shown before stays.
-                reported.warn(entity, "Flood", format_args!("cannot be read: {error}"));
-                self.is_late = false;
-            }
-        }
+        // What cannot be read is passed over; what was shown before stays.
+        self.is_late = part.is_none() && !self.ahead.has_failed(parts[0]);
+        let Some(part) = part else { return };
+        // A jump is no rise.
+        let is_steady = |shown: &&Shown| {
+            let most = f64::from(flood.speed.abs()) * elapsed * 1.5;
+            flood.playing && shown.factor == factor && (shown.time - time).abs() <= most
+        };
+        let before = self.shown.as_ref().filter(is_steady).map(|shown| (&*shown.field, elapsed));
+        let field = Arc::new(part.at(time, factor, before));
+        self.shown = Some(Shown { maps: maps.clone(), time, factor, field });
     }
 }
 
@@ -183,9 +181,15 @@ fn around(maps: &FloodMaps, time: f64, flood: &Flood) -> [usize; 2] {
 fn draw(
     mut commands: Commands,
     mut images: ResMut<Assets<Image>>,
-    mut floods: Query<(Entity, &mut Simulated), (With<Flood>, Played)>,
+    mut reported: ResMut<Reported>,
+    mut floods: Query<(Entity, &Flood, &mut Simulated), Played>,
 ) {
-    for (entity, mut simulated) in &mut floods {
+    for (entity, flood, mut simulated) in &mut floods {
+        let size = flood.maps().map_or(UVec2::ZERO, |maps| maps.georeference().size);
+        if size.max_element() > MOST_CELLS {
+            reported.warn(entity, "Flood", format_args!("has {size} cells, more than {MOST_CELLS}; it is not drawn"));
+            continue;
+        }
         match simulated.played_frame(&mut images) {
             Some(frame) => _ = commands.entity(entity).try_insert(frame),
             None => _ = commands.entity(entity).try_remove::<ShallowFrame>(),
