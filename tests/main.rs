@@ -28,6 +28,7 @@ mod exchange;
 mod exchange_changes;
 mod features;
 mod fields;
+mod flood;
 mod flow;
 mod foam;
 mod glitter;

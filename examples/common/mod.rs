@@ -155,7 +155,8 @@ pub fn run(mut app: App) -> AppExit {
     if let Some(median) = milliseconds.get(milliseconds.len() / 2) {
         println!("{} frames of {}x{}, median {median:.1} ms", options.frames, options.size.x, options.size.y);
     }
-    match take_picture(&mut app, out) {
+    let saved = screenshot(&mut app).and_then(|picture| picture.save(out).map_err(|error| error.to_string()));
+    match saved {
         Ok(()) => AppExit::Success,
         Err(problem) => {
             error!("{}: {problem}", out.display());
@@ -204,7 +205,11 @@ fn warm_up(app: &mut App) {
 #[derive(Resource, Default)]
 struct Taken(Option<Image>);
 
-fn take_picture(app: &mut App, out: &std::path::Path) -> Result<(), String> {
+/// What the camera sees, once it has come back from the GPU; no time passes.
+///
+/// # Errors
+/// That there is no picture.
+pub fn screenshot(app: &mut App) -> Result<image::RgbImage, String> {
     let Some(target) = app.world().resource::<Canvas>().0.clone() else { return Err("there is no canvas".into()) };
     app.init_resource::<Taken>();
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
@@ -214,8 +219,7 @@ fn take_picture(app: &mut App, out: &std::path::Path) -> Result<(), String> {
     for _ in 0..20 {
         app.update();
         if let Some(image) = app.world_mut().resource_mut::<Taken>().0.take() {
-            let picture = image.try_into_dynamic().map_err(|error| error.to_string())?;
-            return picture.to_rgb8().save(out).map_err(|error| error.to_string());
+            return image.try_into_dynamic().map(|picture| picture.to_rgb8()).map_err(|error| error.to_string());
         }
     }
     Err("no picture came back; is there a GPU device?".into())

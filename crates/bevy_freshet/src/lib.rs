@@ -14,6 +14,7 @@ pub mod body;
 #[cfg(feature = "rapier")]
 pub mod buoyancy;
 pub mod features;
+pub mod flood;
 pub mod interaction;
 #[cfg(test)]
 mod layout;
@@ -48,6 +49,7 @@ pub mod prelude {
             StepSimulation, Water, WaterBed, WaterEdge, WaterEdges, WaterFlow, WaterFoam, WaterIce, WaterInteraction,
             WaterLighting, WaterOptics, WaterSimulation, WaterSource, WaterSources, WaterWall, WaterWalls, WaterWaves,
         },
+        flood::Flood,
         interaction::{Disturb, DisturbsWater, DyesWater, WaterTouch, WaterTouchBlocked},
         query::{Submersion, WaterHit, WaterQuery, WaterSample},
         reflection::WaterReflection,
@@ -71,7 +73,12 @@ pub struct WaterPlugin;
 
 impl Plugin for WaterPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((body::BodyPlugin, interaction::InteractionPlugin, simulation::ShallowWaterPlugin));
+        app.add_plugins((
+            body::BodyPlugin,
+            interaction::InteractionPlugin,
+            simulation::ShallowWaterPlugin,
+            flood::FloodPlugin,
+        ));
         #[cfg(feature = "rapier")]
         app.add_plugins(buoyancy::BuoyancyPlugin);
         if app.get_sub_app(RenderApp).is_some() {

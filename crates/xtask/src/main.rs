@@ -2,7 +2,7 @@
 
 mod bench;
 mod command;
-mod river;
+mod example;
 mod setup;
 mod simulation;
 mod test;
@@ -32,6 +32,13 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<OsString>,
     },
+    /// Sets up, then plays back a flood: in a window, or into flood.png where there is no display
+    #[command(disable_help_flag = true)]
+    Flood {
+        /// Handed to the example; --help lists them
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        args: Vec<OsString>,
+    },
     /// Sets up, then checks everything: format, lints, documentation, tests
     Test,
     /// Measures what things cost
@@ -48,7 +55,8 @@ fn main() -> Result<ExitCode> {
                 println!("Everything is there; nothing to do.");
             }
         }
-        Task::River { args } => return river::run(args),
+        Task::River { args } => return example::run("river", args),
+        Task::Flood { args } => return example::run("flood", args),
         Task::Test => test::run()?,
         Task::Bench(bench) => return bench::run(bench),
         Task::Assets => textures::write_all()?,
@@ -68,11 +76,16 @@ mod tests {
     }
 
     #[test]
-    fn the_example_gets_every_argument_after_river() {
+    fn the_examples_get_every_argument_after_their_names() {
         let xtask = Xtask::try_parse_from(["xtask", "river", "--help", "--frames", "9"]);
         let Ok(Xtask { task: Task::River { args } }) = xtask else {
             panic!("arguments of the example are refused");
         };
         assert_eq!(args, ["--help", "--frames", "9"]);
+        let xtask = Xtask::try_parse_from(["xtask", "flood", "converted", "--at", "30min"]);
+        let Ok(Xtask { task: Task::Flood { args } }) = xtask else {
+            panic!("arguments of the example are refused");
+        };
+        assert_eq!(args, ["converted", "--at", "30min"]);
     }
 }

@@ -30,6 +30,7 @@ pub use simulation::{
 pub use waves::{WaterWaves, Wave};
 
 use crate::{
+    flood::FloodState,
     reflection::WaterReflection,
     report::{Reported, forget_despawned},
     schedule::WaterSystems,
@@ -86,7 +87,7 @@ impl Default for Water {
 fn end_water(removed: On<Remove, Water>, mut commands: Commands) {
     let Ok(mut water) = commands.get_entity(removed.entity) else { return };
     water.try_remove::<(ResolvedWater, FieldWindow, FieldPictures, FieldProgress, Deposits)>();
-    water.try_remove::<(Simulated, SimulationState, ShallowFrame)>();
+    water.try_remove::<(Simulated, SimulationState, ShallowFrame, FloodState)>();
     water.try_insert(FieldFrame::Off);
 }
 

@@ -1,5 +1,6 @@
 //! The surface of a simulated water as others see it: level, depth and velocity at any place, smooth over the wet cells.
 use super::ShallowWater;
+use crate::grid::Grid;
 use glam::{UVec2, Vec2, Vec4, Vec4Swizzles};
 use std::sync::Arc;
 
@@ -54,6 +55,17 @@ fn beside(cell: Vec4, level: f32) -> f32 {
     if cell.y > WET { cell.x } else { cell.x.min(level) }
 }
 
+/// ∂η/∂t of `cells`, m/s, since `before`, `elapsed` (s) earlier; 0 where it was dry, or nothing is known.
+fn rising(cells: &[Vec4], before: Option<&Field>, elapsed: f64) -> Vec<f32> {
+    let Some(before) = before.filter(|before| before.cells.len() == cells.len() && elapsed > 0.0) else {
+        return vec![0.0; cells.len()];
+    };
+    let rate = |(now, then): (&Vec4, &Vec4)| {
+        if now.y > WET && then.y > WET { (now.x - then.x) / elapsed as f32 } else { 0.0 }
+    };
+    cells.iter().zip(&before.cells).map(rate).collect()
+}
+
 impl Field {
     /// The state of `water`, rising as it has since `before`, which was `elapsed` (s) earlier.
     pub fn new(water: &ShallowWater, before: Option<&Self>, elapsed: f64) -> Self {
@@ -63,18 +75,20 @@ impl Field {
             Vec4::new(water.level(index), water.depths()[index], velocity.x, velocity.y)
         };
         let cells: Vec<Vec4> = (0..water.depths().len()).map(cell).collect();
-        let before = before.filter(|before| before.cells.len() == cells.len() && elapsed > 0.0);
-        let rising = match before {
-            Some(before) => {
-                let rate = |(now, then): (&Vec4, &Vec4)| {
-                    if now.y > WET && then.y > WET { (now.x - then.x) / elapsed as f32 } else { 0.0 }
-                };
-                cells.iter().zip(&before.cells).map(rate).collect()
-            }
-            None => vec![0.0; cells.len()],
-        };
+        let rising = rising(&cells, before, elapsed);
         let mut field = Self { size, cell_size: water.cell_size(), cells, rising, ..Self::default() };
         field.find_walls(water);
+        field.find_slopes();
+        field.find_bounds();
+        field
+    }
+
+    /// A state that was not simulated here: level (m), depth (m) and velocity (m/s) of every cell, rising as it has since `before`,
+    /// which was `elapsed` (s) earlier. Without walls.
+    pub fn from_cells(cells: Grid<Vec4>, before: Option<&Self>, elapsed: f64) -> Self {
+        let (size, cell_size, cells) = (cells.size(), cells.cell_size(), cells.into_values());
+        let rising = rising(&cells, before, elapsed);
+        let mut field = Self { size, cell_size, cells, rising, ..Self::default() };
         field.find_slopes();
         field.find_bounds();
         field
@@ -242,7 +256,7 @@ impl Field {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{grid::Grid, shallow_water::DomainSide};
+    use crate::shallow_water::DomainSide;
     use glam::{uvec2, vec2};
 
     /// A lake whose shore lies at x = 0, with a tilted surface.

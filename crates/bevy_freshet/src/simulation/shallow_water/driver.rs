@@ -37,6 +37,8 @@ pub(crate) struct Simulated {
     pub exchange: super::Exchange,
     pub pictures: Option<[Handle<Image>; 2]>,
     pub(super) asked: Asked,
+    /// What is played back where nothing is simulated.
+    pub(super) played: Option<ResolvedSimulation>,
 }
 
 /// A running simulation.
@@ -102,7 +104,8 @@ pub(super) struct Waters {
 impl Simulated {
     /// How far the ground lies below the still level where there is no bed, m.
     pub fn flat_ground(&self) -> Option<f32> {
-        self.simulation.as_ref().map(|simulation| -simulation.flat)
+        let played = self.played.as_ref().map(|_| 0.0);
+        self.simulation.as_ref().map(|simulation| -simulation.flat).or(played)
     }
 
     /// The cells of the simulation.
@@ -114,7 +117,7 @@ impl Simulated {
 
     /// The newest state.
     pub fn resolve(&self) -> Option<ResolvedSimulation> {
-        let simulation = self.simulation.as_ref()?;
+        let Some(simulation) = &self.simulation else { return self.played.clone() };
         let age = simulation.on_gpu.as_ref().map_or(0.0, OnGpu::age) as f32;
         Some(ResolvedSimulation { field: simulation.field.clone(), age, area: simulation.area })
     }
@@ -194,7 +197,11 @@ pub(super) fn simulate_on_gpu(
     }
 }
 
-fn pictures_of(known: &mut Option<[Handle<Image>; 2]>, size: UVec2, images: &mut Assets<Image>) -> [Handle<Image>; 2] {
+pub(super) fn pictures_of(
+    known: &mut Option<[Handle<Image>; 2]>,
+    size: UVec2,
+    images: &mut Assets<Image>,
+) -> [Handle<Image>; 2] {
     let fits = |pair: &[Handle<Image>; 2]| images.get(&pair[0]).is_some_and(|image| image.size() == size);
     if let Some(pair) = known.as_ref().filter(|pair| fits(pair)) {
         return pair.clone();

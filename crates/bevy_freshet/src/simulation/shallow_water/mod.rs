@@ -21,6 +21,7 @@ mod numbers;
 mod on_gpu;
 mod pictures;
 mod plan;
+mod played;
 mod returned;
 mod stages;
 mod state;

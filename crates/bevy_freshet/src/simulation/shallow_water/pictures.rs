@@ -17,7 +17,7 @@ use bevy::{
     },
 };
 use freshet_hydro::shallow_water::{Field, WET};
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 /// The coarser levels of a water's pictures.
 #[derive(Component)]
@@ -82,7 +82,7 @@ pub(super) fn draw_pictures(
             }
             ShallowWork::Cpu(field) if levels.drawn.as_ref().is_some_and(|drawn| Arc::ptr_eq(drawn, field)) => {}
             ShallowWork::Cpu(field) => {
-                draw(field, pictures, &queue);
+                draw(field, levels.drawn.as_deref(), pictures, &queue);
                 levels.drawn = Some(field.clone());
                 levels.is_old = true;
             }
@@ -108,23 +108,47 @@ fn levels_of(pictures: [&GpuImage; 2], stages: &Stages, cache: &PipelineCache, d
     (1..pictures[0].texture.mip_level_count()).map(coarser).collect()
 }
 
-/// Writes what the CPU has come to into the pictures.
-fn draw(field: &Field, [level, slopes]: [&GpuImage; 2], queue: &RenderQueue) {
-    let size = field.size();
-    let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
+/// Writes what the CPU has come to into the pictures: the rows that differ from those that were drawn `before`.
+fn draw(field: &Field, before: Option<&Field>, [level, slopes]: [&GpuImage; 2], queue: &RenderQueue) {
+    let columns = field.size().x;
+    let rows = changed_rows(field, before);
+    if rows.is_empty() {
+        return;
+    }
+    let extent = Extent3d { width: columns, height: rows.len() as u32, depth_or_array_layers: 1 };
     let write = |image: &GpuImage, bytes: &[u8], texel: u32| {
-        let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.x * texel), rows_per_image: None };
-        queue.write_texture(image.texture.as_image_copy(), bytes, layout, extent);
+        let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(columns * texel), rows_per_image: None };
+        let mut place = image.texture.as_image_copy();
+        place.origin.y = rows.start as u32;
+        queue.write_texture(place, bytes, layout, extent);
     };
-    let cells = (0..field.cells().len()).map(|index| texel(field, index).to_array());
+    let indices = rows.start * columns as usize..rows.end * columns as usize;
+    let cells = indices.clone().map(|index| texel(field, index).to_array());
     let cells: Vec<u8> = cells.flatten().flat_map(f32::to_le_bytes).collect();
     write(level, &cells, 16);
-    let half = |(index, slope): (usize, &Vec2)| {
+    let half = |index: usize| {
+        let slope = field.slopes()[index];
         let [east, south] = field.walls().get(index).copied().unwrap_or_default().map(f32::from);
         [slope.x, slope.y, east, south].map(half::f16::from_f32).map(half::f16::to_le_bytes).concat()
     };
-    let steep: Vec<u8> = field.slopes().iter().enumerate().flat_map(half).collect();
+    let steep: Vec<u8> = indices.flat_map(half).collect();
     write(slopes, &steep, 8);
+}
+
+/// The rows from the first to the last in which a texel may differ from `before`.
+fn changed_rows(field: &Field, before: Option<&Field>) -> Range<usize> {
+    let (columns, rows) = (field.size().x as usize, field.size().y as usize);
+    let Some(before) = before.filter(|before| before.size() == field.size() && before.walls() == field.walls()) else {
+        return 0..rows;
+    };
+    let differs = |row: &usize| {
+        let row = row * columns..(row + 1) * columns;
+        field.cells()[row.clone()] != before.cells()[row]
+    };
+    // Slopes, and the levels of dry cells, know the rows beside them.
+    let first = (0..rows).find(differs).unwrap_or(rows).saturating_sub(1);
+    let last = (0..rows).rfind(differs).map_or(0, |last| (last + 2).min(rows));
+    first..last
 }
 
 /// A cell in the picture. A dry one has the level of the wet cells around it, and 1 if there are any: `dry` in `show.wgsl`.

@@ -1,4 +1,4 @@
-//! `cargo xtask river`.
+//! `cargo xtask river` and `cargo xtask flood`.
 
 use std::{ffi::OsString, process::ExitCode};
 
@@ -6,24 +6,28 @@ use anyhow::Result;
 
 use crate::{command, setup};
 
-/// Sets the machine up and runs the river example with `args`; its exit code becomes this command's.
-pub fn run(args: Vec<OsString>) -> Result<ExitCode> {
+/// Sets the machine up and runs the example `name` with `args`; its exit code becomes this command's.
+pub fn run(name: &str, args: Vec<OsString>) -> Result<ExitCode> {
     setup::run(setup::Purpose::Run)?;
     let status = command::status(
         command::cargo()
-            .args(["run", "--package", "bevy_freshet", "--features", "panel", "--example", "river", "--"])
-            .args(with_output(args, setup::has_display())),
+            .args(["run", "--package", "bevy_freshet", "--features", "panel", "--example", name, "--"])
+            .args(with_output(name, args, setup::has_display())),
     )?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());
     Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
 }
 
 /// Without a display to open a window on, the picture goes to a file, unless `args` already names one.
-fn with_output(mut args: Vec<OsString>, display: bool) -> Vec<OsString> {
-    let named = args.iter().any(|arg| arg == "--out" || arg.as_encoded_bytes().starts_with(b"--out="));
+fn with_output(name: &str, mut args: Vec<OsString>, display: bool) -> Vec<OsString> {
+    let names = |arg: &OsString, option: &str| {
+        let bytes = arg.as_encoded_bytes();
+        bytes.strip_prefix(option.as_bytes()).is_some_and(|rest| rest.is_empty() || rest.starts_with(b"="))
+    };
+    let named = args.iter().any(|arg| names(arg, "--out") || names(arg, "--film"));
     let asks_for_help = args.iter().any(|arg| arg == "--help" || arg == "-h");
     if !display && !named && !asks_for_help {
-        args.extend(["--out", "river.png"].map(OsString::from));
+        args.extend(["--out".into(), format!("{name}.png").into()]);
     }
     args
 }
@@ -33,7 +37,7 @@ mod tests {
     use super::*;
 
     fn output(args: &[&str], display: bool) -> Vec<OsString> {
-        with_output(args.iter().map(OsString::from).collect(), display)
+        with_output("river", args.iter().map(OsString::from).collect(), display)
     }
 
     #[test]
@@ -46,6 +50,7 @@ mod tests {
     fn keeps_the_file_the_user_names() {
         assert_eq!(output(&["--out", "a.png"], false), ["--out", "a.png"]);
         assert_eq!(output(&["--out=a.png"], false), ["--out=a.png"]);
+        assert_eq!(output(&["--film", "a.gif"], false), ["--film", "a.gif"]);
         assert_eq!(output(&["--help"], false), ["--help"]);
     }
 }

@@ -1,0 +1,82 @@
+//! Reads parts of a flood before they are shown, in the background.
+use super::{
+    FloodMaps, MapsError,
+    part::{Ground, Part},
+};
+use bevy::tasks::{AsyncComputeTaskPool, Task, block_on};
+use std::sync::Arc;
+
+/// What of a flood is in memory.
+#[derive(Default)]
+pub struct Ahead {
+    maps: Option<Arc<FloodMaps>>,
+    ground: Option<Arc<Ground>>,
+    parts: Vec<Arc<Part>>,
+    reading: Option<(usize, Task<Result<Part, MapsError>>)>,
+    /// Parts that cannot be read.
+    failed: Vec<usize>,
+}
+
+impl Ahead {
+    /// The part `wanted`, if it is there; if it `waits` it is, unless it cannot be read. The part `next` is read after it, and all others but
+    /// its neighbours are forgotten.
+    ///
+    /// # Errors
+    /// [`MapsError`] of a part that cannot be read, once.
+    pub fn part(
+        &mut self,
+        maps: &Arc<FloodMaps>,
+        [wanted, next]: [usize; 2],
+        waits: bool,
+    ) -> Result<Option<Arc<Part>>, MapsError> {
+        if !self.maps.as_ref().is_some_and(|known| Arc::ptr_eq(known, maps)) {
+            *self = Self { maps: Some(maps.clone()), ..Self::default() };
+        }
+        loop {
+            let found = self.parts.iter().find(|part| part.index == wanted).cloned();
+            let missing = !self.failed.contains(&wanted) && found.is_none();
+            self.receive(missing && waits)?;
+            if self.reading.is_none() {
+                let is_known = |index: usize| self.failed.contains(&index) || self.has(index);
+                if let Some(index) = [wanted, next].into_iter().find(|index| !is_known(*index)) {
+                    self.read(maps.clone(), index);
+                }
+            }
+            if !(missing && waits) {
+                self.parts.retain(|part| part.index.abs_diff(wanted) <= 1 || part.index == next);
+                return Ok(found);
+            }
+        }
+    }
+
+    /// Whether a part cannot be read.
+    pub fn has_failed(&self, index: usize) -> bool {
+        self.failed.contains(&index)
+    }
+
+    fn has(&self, index: usize) -> bool {
+        self.parts.iter().any(|part| part.index == index)
+    }
+
+    fn read(&mut self, maps: Arc<FloodMaps>, index: usize) {
+        let ground = self.ground.clone();
+        let task = AsyncComputeTaskPool::get().spawn(async move { Part::read(&maps, ground, index) });
+        self.reading = Some((index, task));
+    }
+
+    /// Takes what has been read, or waits until it is.
+    fn receive(&mut self, waits: bool) -> Result<(), MapsError> {
+        let Some((index, task)) = self.reading.take_if(|(_, task)| waits || task.is_finished()) else { return Ok(()) };
+        match block_on(task) {
+            Ok(part) => {
+                self.ground = Some(part.ground.clone());
+                self.parts.push(Arc::new(part));
+                Ok(())
+            }
+            Err(error) => {
+                self.failed.push(index);
+                Err(error)
+            }
+        }
+    }
+}

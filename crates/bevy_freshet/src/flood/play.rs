@@ -1,0 +1,198 @@
+//! Plays floods: their time, and the water at it.
+use super::{Flood, FloodMaps, ahead::Ahead, part};
+use crate::{
+    body::{Water, WaterSimulation},
+    report::Reported,
+    schedule::WaterSystems,
+    simulation::{ShallowFrame, Simulated},
+};
+use bevy::{prelude::*, render::RenderApp};
+use freshet_flood::flow_map::MOST_CELLS;
+use freshet_hydro::shallow_water::Field;
+use std::sync::Arc;
+
+/// What is shown of a [`Flood`]. Read only; beside every one.
+#[derive(Component, Default)]
+pub struct FloodState {
+    ahead: Ahead,
+    shown: Option<Shown>,
+    /// What is shown as long as nothing is there: no water.
+    dry: Option<Arc<Field>>,
+    /// Whether its time is not there yet.
+    is_late: bool,
+}
+
+/// What is shown of a flood.
+struct Shown {
+    maps: Arc<FloodMaps>,
+    time: f64,
+    factor: f32,
+    field: Arc<Field>,
+}
+
+/// Plays every [`Flood`].
+pub(crate) struct FloodPlugin;
+
+impl Plugin for FloodPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_observer(end_flood)
+            .add_systems(FixedFirst, (advance, show).chain().before(WaterSystems::Resolve))
+            .add_systems(PostUpdate, show.after(TransformSystems::Propagate).before(WaterSystems::Resolve));
+        if app.get_sub_app(RenderApp).is_some() {
+            app.add_systems(PostUpdate, draw.after(show).before(WaterSystems::Resolve));
+        }
+    }
+}
+
+/// Without [`Flood`] the water is still again.
+fn end_flood(removed: On<Remove, Flood>, mut commands: Commands, mut waters: Query<&mut Simulated>) {
+    if let Ok(mut simulated) = waters.get_mut(removed.entity) {
+        simulated.play(None);
+    }
+    if let Ok(mut water) = commands.get_entity(removed.entity) {
+        water.try_remove::<(FloodState, ShallowFrame)>();
+    }
+}
+
+/// Floods that are played: none beside a simulation.
+type Played = (With<Water>, Without<WaterSimulation>);
+
+/// Lets the time of floods pass, unless they wait for it.
+fn advance(
+    time: Res<Time>,
+    mut reported: ResMut<Reported>,
+    mut floods: Query<(Entity, &mut Flood, &FloodState, Has<WaterSimulation>), With<Water>>,
+) {
+    for (entity, mut flood, playback, is_simulated) in &mut floods {
+        if is_simulated {
+            reported.warn(entity, "Flood", "is beside a WaterSimulation; the simulation counts");
+        } else if flood.playing && !playback.is_late {
+            let speed = reported.clamp(entity, "Flood::speed", flood.speed, -1e5..=1e5, 60.0);
+            flood.advance(time.delta_secs_f64() * f64::from(speed));
+        }
+    }
+}
+
+/// Brings the water to the time of its flood, as far as its steps are there.
+fn show(
+    time: Res<Time>,
+    mut commands: Commands,
+    mut reported: ResMut<Reported>,
+    mut floods: Query<(Entity, &Flood, &Water, &mut FloodState, Option<&mut Simulated>), Played>,
+) {
+    for (entity, flood, water, mut playback, simulated) in &mut floods {
+        let Some(maps) = flood.maps() else { continue };
+        let Some(mut simulated) = simulated else {
+            // It went with a simulation.
+            commands.entity(entity).try_insert(Simulated::default());
+            continue;
+        };
+        let factor = reported.clamp(entity, "Flood::exaggeration", flood.exaggeration, 0.01..=100.0, 1.0);
+        if flood.time.is_nan() {
+            reported.warn(entity, "Flood::time", "is no number; the first step is shown");
+        }
+        if (water.size - Flood::size(maps)).abs().max_element() > 0.5 * maps.georeference().cell_size as f32 {
+            let (found, expected) = (water.size, Flood::size(maps));
+            reported.warn(entity, "Water::size", format_args!("is {found}, that of its Flood {expected}"));
+        }
+        playback.show(entity, flood, maps, factor, time.delta_secs_f64(), &mut reported);
+        simulated.play(Some(playback.water(maps)));
+    }
+}
+
+impl FloodState {
+    /// Time of what is shown, s in the data; `None` until the first steps are there.
+    pub fn time(&self) -> Option<f64> {
+        self.shown.as_ref().map(|shown| shown.time)
+    }
+
+    /// Level, depth and velocity of every cell as they are shown, [`Flood::exaggeration`] times as high.
+    pub fn field(&self) -> Option<&Arc<Field>> {
+        self.shown.as_ref().map(|shown| &shown.field)
+    }
+
+    /// Whether the water of the flood's time is not there yet.
+    pub fn is_late(&self) -> bool {
+        self.is_late
+    }
+
+    /// The water that is shown.
+    fn water(&mut self, maps: &FloodMaps) -> Arc<Field> {
+        if let Some(shown) = &self.shown {
+            return shown.field.clone();
+        }
+        let size = maps.georeference().size;
+        let dry = self.dry.take().filter(|dry| dry.size() == size).unwrap_or_else(|| Arc::new(part::dry(maps)));
+        self.dry.insert(dry).clone()
+    }
+
+    /// Makes the water of the flood's time, if that is not shown already; the last frame or fixed step was `elapsed` (s) ago.
+    fn show(
+        &mut self,
+        entity: Entity,
+        flood: &Flood,
+        maps: &Arc<FloodMaps>,
+        factor: f32,
+        elapsed: f64,
+        reported: &mut Reported,
+    ) {
+        let time = flood.usable_time();
+        if self.shown.as_ref().is_some_and(|shown| !Arc::ptr_eq(&shown.maps, maps)) {
+            self.shown = None;
+        }
+        let parts = around(maps, time, flood);
+        let part = self.ahead.part(maps, parts, flood.waits).unwrap_or_else(|error| {
+            reported.warn(entity, "Flood", format_args!("cannot be read: {error}"));
+            None
+        });
+        if self.shown.as_ref().is_some_and(|shown| shown.time == time && shown.factor == factor) {
+            self.is_late = false;
+            return;
+        }
+        // What cannot be read is passed over; what was shown before stays.
+        self.is_late = part.is_none() && !self.ahead.has_failed(parts[0]);
+        let Some(part) = part else { return };
+        // A jump is no rise.
+        let is_steady = |shown: &&Shown| {
+            let most = f64::from(flood.speed.abs()) * elapsed * 1.5;
+            flood.playing && shown.factor == factor && (shown.time - time).abs() <= most
+        };
+        let before = self.shown.as_ref().filter(is_steady).map(|shown| (&*shown.field, elapsed));
+        let field = Arc::new(part.at(time, factor, before));
+        self.shown = Some(Shown { maps: maps.clone(), time, factor, field });
+    }
+}
+
+/// The part that a time lies in, and the one that is played after it.
+fn around(maps: &FloodMaps, time: f64, flood: &Flood) -> [usize; 2] {
+    let last = maps.times().len().saturating_sub(2);
+    let wanted = maps.step_before(time).min(last);
+    let next = match (flood.speed < 0.0, flood.looping) {
+        (false, _) if wanted < last => wanted + 1,
+        (false, true) => 0,
+        (true, _) if wanted > 0 => wanted - 1,
+        (true, true) => last,
+        _ => wanted,
+    };
+    [wanted, next]
+}
+
+/// Hands what is shown to the renderer.
+fn draw(
+    mut commands: Commands,
+    mut images: ResMut<Assets<Image>>,
+    mut reported: ResMut<Reported>,
+    mut floods: Query<(Entity, &Flood, &mut Simulated), Played>,
+) {
+    for (entity, flood, mut simulated) in &mut floods {
+        let size = flood.maps().map_or(UVec2::ZERO, |maps| maps.georeference().size);
+        if size.max_element() > MOST_CELLS {
+            reported.warn(entity, "Flood", format_args!("has {size} cells, more than {MOST_CELLS}; it is not drawn"));
+            continue;
+        }
+        match simulated.played_frame(&mut images) {
+            Some(frame) => _ = commands.entity(entity).try_insert(frame),
+            None => _ = commands.entity(entity).try_remove::<ShallowFrame>(),
+        }
+    }
+}
