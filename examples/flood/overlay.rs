@@ -26,7 +26,8 @@ pub fn draw(
     let frame = context.viewport_rect().shrink(MARGIN);
     let time = format!("{} / {}", clock(flood.usable_time()), clock(flood.span().1));
     label(&painter, frame.left_top(), Align2::LEFT_TOP, &time, 20.0);
-    legend(&painter, &viewer, frame.right_bottom());
+    // Under the north arrow, where no timeline is.
+    legend(&painter, &viewer, frame.right_top() + size(0.0, 118.0));
     let (camera, pose) = *camera;
     north(&painter, pose, frame.right_top() + size(-22.0, 26.0));
     scale_bar(&painter, camera, pose, &viewer, frame.left_bottom());

@@ -29,7 +29,7 @@ pub fn draw(
                 }
             }
         });
-        ui.weak("drag: orbit   right drag: pan   wheel: zoom   space: play   ← →: step   K: keyframe   F1: water");
+        ui.weak("drag: orbit   right drag: pan   wheel: zoom   space: play   arrows: step   K: keyframe   F1: water");
     });
     Ok(())
 }
