@@ -105,7 +105,7 @@ fn water_that_is_paused_keeps_its_bodies_and_lets_go_of_them_later() {
     on_both(|mut scene| {
         scene.check("at rest");
         scene.settings().paused = true;
-        run(&mut scene.app, 0.2);
+        run(&mut scene.app, 0.5);
         let before = scene.raised();
         run(&mut scene.app, 2.0);
         assert_eq!(scene.raised(), before);
