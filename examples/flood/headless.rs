@@ -42,10 +42,6 @@ pub struct Plan {
 /// What the name must be.
 pub fn film(text: &str) -> Result<Output, String> {
     let path = PathBuf::from(text);
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(".".as_ref());
-    if !folder.is_dir() {
-        return Err(format!("there is no folder {}", folder.display()));
-    }
     let ends_in = |wanted: &str| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(wanted));
     if ends_in("gif") {
         return Ok(Output::Gif(path));
@@ -117,6 +113,7 @@ fn show(app: &mut App, time: f64, frame: Duration) {
 }
 
 fn draw(app: &mut App, plan: &Plan, times: &[f64], frame: Duration) -> Result<(), String> {
+    make_folder(&plan.output)?;
     let mut animation = match &plan.output {
         Output::Gif(path) => Some(Animation::new(path, plan.fps)?),
         _ => None,
@@ -144,6 +141,17 @@ fn draw(app: &mut App, plan: &Plan, times: &[f64], frame: Duration) -> Result<()
         println!();
     }
     animation.map_or(Ok(()), Animation::finish)
+}
+
+/// Makes the folder of a film, if it is not there.
+fn make_folder(output: &Output) -> Result<(), String> {
+    let path = match output {
+        Output::Picture(_) => return Ok(()),
+        Output::Pictures(pattern) => Path::new(pattern),
+        Output::Gif(path) => path,
+    };
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(".".as_ref());
+    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))
 }
 
 fn save(picture: &RgbImage, path: &Path) -> Result<(), String> {

@@ -157,6 +157,9 @@ fn describe(summary: &Summary, steps: &Steps, out: &Path) -> Result<String, std:
     let (first, last) = (summary.steps.first(), summary.steps.last());
     writeln!(text, "model    {} × {} cells of {} m", all.x, all.y, steps.georeference().cell_size)?;
     writeln!(text, "maps     {} × {} cells from column {}, row {}", size.x, size.y, origin.x, origin.y)?;
+    for file in steps.left_out() {
+        writeln!(text, "left out {}", file.display())?;
+    }
     if let Some(Resampling::Bilinear) = summary.terrain {
         writeln!(text, "terrain  has other cells: resampled bilinearly")?;
     }

@@ -30,6 +30,7 @@ use serde::Deserialize;
 use crate::arrival::ArrivalMap;
 use crate::flow_map::{Defaults, FlowMap};
 use crate::georeference::Georeference;
+use crate::incremental::MOST_CELLS;
 use crate::interpolation::{Interval, quantity_at};
 use crate::step::{Quantity, Step};
 pub use error::MapsError;
@@ -283,10 +284,15 @@ fn check(manifest: &Manifest) -> Result<(), &'static str> {
     let is_inside =
         |file: &String| Path::new(file).components().all(|component| matches!(component, Component::Normal(_)));
     let times = steps.iter().map(|step| step.time);
-    let is_place = georeference.corner.is_finite() && georeference.cell_size.is_finite();
+    let cells = u64::from(georeference.size.x) * u64::from(georeference.size.y);
+    let is_place = georeference.corner.is_finite() && georeference.cell_size > 0.0;
     let checks = [
         (georeference.size.min_element() > 0, "expected at least one column and one row"),
-        (is_place && georeference.cell_size > 0.0, "expected a place on the map and a cell size above zero"),
+        (cells <= MOST_CELLS, "expected at most 10⁸ cells"),
+        (
+            is_place && (georeference.cell_size as f32).is_normal(),
+            "expected a place on the map and a cell size above zero",
+        ),
         (threshold.is_finite() && *threshold > 0.0, "expected a threshold above 0 m"),
         (!steps.is_empty(), "expected at least one step"),
         (times.clone().all(f64::is_finite) && times.is_sorted_by(|a, b| a < b), "expected times that increase"),

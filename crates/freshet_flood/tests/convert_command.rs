@@ -249,11 +249,16 @@ fn what_is_in_the_way_stays() {
     case.fails("", "dm2.asc");
     assert_eq!(names(&case.path("out")), ["depth", "flood.ron"]);
     fs::write(case.path("steps/dm2.asc"), good).unwrap();
+    // What else lies in its folder is not lost with it.
+    fs::write(case.path("out/notes.txt"), "mine").unwrap();
+    case.fails("", "notes.txt: is in the way");
+    assert_eq!(fs::read_to_string(case.path("out/notes.txt")).unwrap(), "mine");
+    fs::remove_file(case.path("out/notes.txt")).unwrap();
     fs::remove_file(case.path("out/flood.ron")).unwrap();
-    case.fails("", "out: is there already and is no flood");
+    case.fails("", "out: is in the way and belongs to no flood");
     fs::remove_dir_all(case.path("out")).unwrap();
     fs::write(case.path("out"), "a file").unwrap();
-    case.fails("", "out: is there already and is no flood");
+    case.fails("", "out: is in the way and belongs to no flood");
     let output = case.run("convert --steps steps --interval 1min --out out/flood");
     assert_eq!(output.status.code(), Some(1));
     let output = case.run("convert --steps steps --interval 1min --out no/such/folder");

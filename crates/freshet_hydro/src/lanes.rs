@@ -1,5 +1,5 @@
 //! Eight numbers at once: plain arrays, whose loops the compiler turns into vector instructions.
-use std::f32::consts::FRAC_2_PI;
+use std::f32::consts::{FRAC_2_PI, FRAC_PI_2};
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// How many numbers are worked on at once.
@@ -65,6 +65,8 @@ impl Lanes {
             let shifted = *sin * FRAC_2_PI + ROUNDING;
             let (turns, quadrant) = (shifted - ROUNDING, shifted.to_bits());
             let x = ((*sin - turns * 1.570_312_5) - turns * 4.837_513e-4) - turns * 7.549_79e-8;
+            // Where all digits are gone the result is any number, but still that of some angle.
+            let x = x.clamp(-FRAC_PI_2, FRAC_PI_2);
             let z = x * x;
             let odd = x + x * z * (z * (z * -1.951_529_6e-4 + 8.332_161e-3) - 0.166_666_55);
             let even = (1.0 - 0.5 * z) + z * z * (z * (z * 2.443_315_7e-5 - 1.388_731_6e-3) + 4.166_664_6e-2);
@@ -232,6 +234,10 @@ mod tests {
                 let error = (f64::from(sin.0[lane]) - s).abs().max((f64::from(cos.0[lane]) - c).abs());
                 assert!(error < if angle.abs() < 1e4 { 1.5e-7 } else { 1e-6 }, "{error:e} off at {angle}");
             }
+        }
+        for angle in [2e7, 5e7, -1e9, 1e30, f32::MAX] {
+            let (sin, cos) = Lanes::splat(angle).sin_cos();
+            assert!(sin.0[0].abs() < 1.1 && cos.0[0].abs() < 1.1, "{angle}: {}, {}", sin.0[0], cos.0[0]);
         }
         let (sin, cos) = Lanes::splat(f32::INFINITY).sin_cos();
         assert!(sin.0[0].is_nan() && cos.0[0].is_nan());

@@ -138,11 +138,13 @@ impl WaveField {
         libm::powf(contraction, search::LEAST_CONTRACTIONS as f32) * self.total_amplitude()
     }
 
-    /// Replaces `carried` by the waves that samples `spacing` (m) apart can carry: all of a train above four samples a wave, nothing below
-    /// two, smooth between. What is shorter would be seen at random. Allocates only if `carried` has no room.
-    pub fn carried_by(&self, spacing: f32, carried: &mut Self) {
+    /// Replaces `carried` by the waves that a lattice of these two `steps` (xz, m) can carry: all of a train that has four samples a wave
+    /// along both of them, nothing of one that has but two along one, smooth between. What is shorter would be seen at random. Allocates
+    /// only if `carried` has no room.
+    pub fn carried_by(&self, steps: [Vec2; 2], carried: &mut Self) {
         let share = |train: &WaveTrain| {
-            let samples = TAU / (train.wave_vector.length() * spacing).max(f32::MIN_POSITIVE);
+            let turned = steps.map(|step| train.wave_vector.dot(step).abs());
+            let samples = TAU / turned[0].max(turned[1]).max(f32::MIN_POSITIVE);
             let t = (0.5 * (samples - 2.0)).clamp(0.0, 1.0);
             t * t * (3.0 - 2.0 * t)
         };
@@ -289,10 +291,10 @@ mod tests {
             .map(|wavelength| Wave { direction: Vec2::X, wavelength, steepness: 0.1, phase: 0.0 })
             .to_vec();
         let (field, mut carried) = (WaveField::at(&waves, 5.0, 1.0), WaveField::default());
-        field.carried_by(1.0, &mut carried);
+        field.carried_by([Vec2::X, 50.0 * Vec2::Y], &mut carried);
         assert_eq!(carried.trains[1..], field.trains[3..]);
         assert_relative_eq!(carried.trains[0].amplitude, 0.5 * field.trains[2].amplitude, max_relative = 1e-5);
-        field.carried_by(0.0, &mut carried);
+        field.carried_by([Vec2::ZERO; 2], &mut carried);
         assert_eq!(carried, field);
     }
 

@@ -63,16 +63,20 @@ pub(super) fn sample_water(
         let mut own = water.water_at(keel(corners[0].midpoint(corners[1])));
         let Footprint { lattice, waves, lowest, .. } = &mut state.footprint;
         *lowest = aabb.mins.y;
+        let step = (corners[1] - corners[0]) / (places - 1) as f32;
+        let carry = |own: Entity, waves: &mut WaveField| water.waves_carried_by(own, step, waves);
         if let Some(own) = own {
-            let spacing = (corners[1] - corners[0]).max_element() / (places - 1) as f32;
-            water.waves_carried_by(own, spacing, waves);
+            carry(own, waves);
         }
         lattice.look_up(corners, places, |places, surfaces| {
             let found = own.map_or_else(Default::default, |own| water.samples_of(own, waves, places));
             for ((place, surface), found) in places.iter().zip(surfaces).zip(found) {
                 let reaches = |other: &WaterSample| own.is_none() || other.height > aabb.mins.y;
                 let found = found.or_else(|| water.sample(keel(*place)).filter(reaches));
-                own = own.or(found.as_ref().map(|found| found.water));
+                if let (None, Some(found)) = (own, &found) {
+                    own = Some(found.water);
+                    carry(found.water, waves);
+                }
                 *surface = found.as_ref().and_then(surface_of).map(|found| Surface {
                     velocity: if floating.current { found.velocity } else { Vec3::ZERO },
                     ..found

@@ -19,23 +19,21 @@ pub struct Ahead {
 
 impl Ahead {
     /// The part `wanted`, if it is there; if it `waits` it is, unless it cannot be read. The part `next` is read after it, and all others but
-    /// its neighbours are forgotten.
-    ///
-    /// # Errors
-    /// [`MapsError`] of a part that cannot be read, once.
+    /// its neighbours are forgotten. With it comes why another part, or this one, cannot be read, once.
     pub fn part(
         &mut self,
         maps: &Arc<FloodMaps>,
         [wanted, next]: [usize; 2],
         waits: bool,
-    ) -> Result<Option<Arc<Part>>, MapsError> {
+    ) -> (Option<Arc<Part>>, Option<MapsError>) {
         if !self.maps.as_ref().is_some_and(|known| Arc::ptr_eq(known, maps)) {
             *self = Self { maps: Some(maps.clone()), ..Self::default() };
         }
+        let mut failed = None;
         loop {
             let found = self.parts.iter().find(|part| part.index == wanted).cloned();
             let missing = !self.failed.contains(&wanted) && found.is_none();
-            self.receive(missing && waits)?;
+            failed = self.receive(missing && waits).err().or(failed);
             if self.reading.is_none() {
                 let is_known = |index: usize| self.failed.contains(&index) || self.has(index);
                 if let Some(index) = [wanted, next].into_iter().find(|index| !is_known(*index)) {
@@ -44,7 +42,7 @@ impl Ahead {
             }
             if !(missing && waits) {
                 self.parts.retain(|part| part.index.abs_diff(wanted) <= 1 || part.index == next);
-                return Ok(found);
+                return (found, failed);
             }
         }
     }

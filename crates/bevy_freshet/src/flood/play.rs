@@ -4,7 +4,7 @@ use crate::{
     body::{Water, WaterSimulation},
     report::Reported,
     schedule::WaterSystems,
-    simulation::{ShallowFrame, Simulated},
+    simulation::{ShallowFrame, Simulated, simulate_on_cpu, simulate_on_gpu},
 };
 use bevy::{prelude::*, render::RenderApp};
 use freshet_flood::flow_map::MOST_CELLS;
@@ -28,6 +28,8 @@ struct Shown {
     time: f64,
     factor: f32,
     field: Arc<Field>,
+    /// Whether its surface has a velocity upwards.
+    rises: bool,
 }
 
 /// Plays every [`Flood`].
@@ -36,8 +38,11 @@ pub(crate) struct FloodPlugin;
 impl Plugin for FloodPlugin {
     fn build(&self, app: &mut App) {
         app.add_observer(end_flood)
-            .add_systems(FixedFirst, (advance, show).chain().before(WaterSystems::Resolve))
-            .add_systems(PostUpdate, show.after(TransformSystems::Propagate).before(WaterSystems::Resolve));
+            .add_systems(FixedFirst, (advance, show).chain().after(simulate_on_cpu).before(WaterSystems::Resolve))
+            .add_systems(
+                PostUpdate,
+                show.after(TransformSystems::Propagate).after(simulate_on_gpu).before(WaterSystems::Resolve),
+            );
         if app.get_sub_app(RenderApp).is_some() {
             app.add_systems(PostUpdate, draw.after(show).before(WaterSystems::Resolve));
         }
@@ -141,11 +146,14 @@ impl FloodState {
             self.shown = None;
         }
         let parts = around(maps, time, flood);
-        let part = self.ahead.part(maps, parts, flood.waits).unwrap_or_else(|error| {
-            reported.warn(entity, "Flood", format_args!("cannot be read: {error}"));
-            None
-        });
-        if self.shown.as_ref().is_some_and(|shown| shown.time == time && shown.factor == factor) {
+        let (part, failed) = self.ahead.part(maps, parts, flood.waits);
+        if let Some(error) = failed {
+            reported.warn(entity, "Flood (its steps)", format_args!("cannot be read: {error}"));
+        }
+        // What stands does not rise.
+        let stands = !flood.playing || flood.speed == 0.0;
+        let is_shown = |shown: &Shown| shown.time == time && shown.factor == factor && !(stands && shown.rises);
+        if self.shown.as_ref().is_some_and(is_shown) {
             self.is_late = false;
             return;
         }
@@ -155,11 +163,12 @@ impl FloodState {
         // A jump is no rise.
         let is_steady = |shown: &&Shown| {
             let most = f64::from(flood.speed.abs()) * elapsed * 1.5;
-            flood.playing && shown.factor == factor && (shown.time - time).abs() <= most
+            !stands && shown.factor == factor && (shown.time - time).abs() <= most
         };
         let before = self.shown.as_ref().filter(is_steady).map(|shown| (&*shown.field, elapsed));
+        let rises = before.is_some();
         let field = Arc::new(part.at(time, factor, before));
-        self.shown = Some(Shown { maps: maps.clone(), time, factor, field });
+        self.shown = Some(Shown { maps: maps.clone(), time, factor, field, rises });
     }
 }
 

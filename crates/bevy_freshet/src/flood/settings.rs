@@ -3,6 +3,7 @@ use super::{FloodMaps, FloodState, MapsError};
 use crate::{
     body::{Water, WaterBed, WaterBedError, WaterFoam, WaterInteraction, WaterOptics, WaterWaves},
     simulation::Simulated,
+    surface::WaterSurface,
 };
 use bevy::prelude::*;
 use std::sync::Arc;
@@ -62,6 +63,8 @@ impl Flood {
             Water::new(Self::size(maps)),
             WaterOptics::MUDDY,
             WaterWaves::still(),
+            // So that a kilometre away the shore is still cut by triangles of two cells.
+            WaterSurface { cell: (2.0 * cell).clamp(0.15, 100.0), cells: 128, ..default() },
             WaterInteraction { cell, wavelength: (6.0 * cell).max(1.2), ..default() },
             // Fronts run together more slowly than rivers do; the shallow rim of what stands is no front.
             WaterFoam { shore: 0.0, breaking_threshold: 0.1, pattern_size: (2.0 * cell).max(1.5), ..default() },

@@ -26,7 +26,7 @@ impl WaterQuery<'_, '_> {
     /// The larger the error, the less it costs: low waves are left out, and the search for the particle above a place ends sooner. Both are
     /// bounded for the steepest place of the water, so that what is found is mostly ten times nearer. The bound needs waves whose
     /// steepnesses add up to less than 1, and a bed without gaps that does not shelve too steeply for them. Waters with ice, simulated
-    /// ones, places where several waters lie above one another, and errors below a millimetre are searched as `sample` does. Large batches are
+    /// ones, places where several waters lie above one another, and errors that the search of `sample` has itself are searched as `sample` does. Large batches are
     /// shared out between the threads of the [`ComputeTaskPool`]; a place has the same height in every batch.
     ///
     /// ```

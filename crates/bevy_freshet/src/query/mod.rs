@@ -67,11 +67,12 @@ impl WaterQuery<'_, '_> {
         }
     }
 
-    /// The waves of `water` that samples `spacing` (m) apart can carry.
+    /// The waves of `water` that a lattice of these steps along the world's x and z (m) can carry.
     #[cfg(feature = "rapier")]
-    pub(crate) fn waves_carried_by(&self, water: Entity, spacing: f32, carried: &mut WaveField) {
+    pub(crate) fn waves_carried_by(&self, water: Entity, step: Vec2, carried: &mut WaveField) {
         if let Ok((_, water)) = self.waters.get(water) {
-            water.waves.carried_by(spacing, carried);
+            let steps = [vec2(step.x, 0.0), vec2(0.0, step.y)];
+            water.waves.carried_by(steps.map(|step| water.local_from_world.transform_vector2(step)), carried);
         }
     }
 

@@ -72,8 +72,8 @@ pub enum MapsError {
     /// There is no such step.
     #[error("there is no step {0}: this flood has {1}, counted from 0")]
     NoStep(usize, usize),
-    /// Something else is where the flood should be written.
-    #[error("{}: is there already and is no flood; remove it or choose another folder", .0.display())]
+    /// Something else is where the flood should be written, or in a folder that it would replace.
+    #[error("{}: is in the way and belongs to no flood; remove it or choose another folder", .0.display())]
     InTheWay(PathBuf),
 }
 

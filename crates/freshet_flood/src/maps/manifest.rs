@@ -81,6 +81,10 @@ pub enum Map {
 }
 
 impl Map {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Terrain, Self::Arrival, Self::MaximumDepth, Self::MaximumSpeed, Self::Duration, Self::Hazard];
+
     /// Name of its picture, without ending.
     pub fn name(self) -> &'static str {
         match self {

@@ -161,11 +161,24 @@ impl MapsWriter {
     }
 }
 
-/// Refuses to take the place of anything but a flood.
+/// Refuses to take the place of anything but a flood, also of one with other files in its folder, as they would be lost.
 fn check_place(place: &Path) -> Result<(), MapsError> {
-    let is_free = !place.exists() || place.join(manifest::FILE).is_file();
-    let is_empty = || fs::read_dir(place).is_ok_and(|mut entries| entries.next().is_none());
-    if is_free || is_empty() { Ok(()) } else { Err(MapsError::InTheWay(place.into())) }
+    if !place.exists() {
+        return Ok(());
+    }
+    let entries = fs::read_dir(place).map_err(|_| MapsError::InTheWay(place.into()))?;
+    let names: Vec<_> = entries.flatten().map(|entry| entry.file_name()).collect();
+    if !names.is_empty() && !names.iter().any(|name| name == manifest::FILE) {
+        return Err(MapsError::InTheWay(place.into()));
+    }
+    let is_own = |name: &str| match name.strip_suffix(".png") {
+        Some(name) => ["flow", "normals"].contains(&name) || Map::ALL.iter().any(|map| map.name() == name),
+        None => name == manifest::FILE || Quantity::ALL.iter().any(|quantity| quantity.name() == name),
+    };
+    match names.iter().find(|name| !name.to_str().is_some_and(is_own)) {
+        Some(foreign) => Err(MapsError::InTheWay(place.join(foreign))),
+        None => Ok(()),
+    }
 }
 
 /// Bytes of all files in a folder and those within.

@@ -29,7 +29,7 @@ mod state;
 mod tests;
 mod usable;
 
-pub(crate) use driver::Simulated;
+pub(crate) use driver::{Simulated, simulate_on_cpu, simulate_on_gpu};
 #[cfg(feature = "rapier")]
 pub(crate) use exchange::Exchange;
 pub(crate) use frame::{GpuWork, Ground, ShallowFrame, ShallowWork, StartState};
