@@ -1,14 +1,10 @@
 //! `freshet-flood convert` and `freshet-flood grid`, run as a user runs them.
 
-#![expect(clippy::unwrap_used, reason = "a test ends where something is wrong")]
-
-mod floods;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use floods::{flood, ring};
+use crate::known::{flood, ring};
 use freshet_flood::esri_ascii::EsriGrid;
 use freshet_flood::maps::{FloodMaps, Map};
 use freshet_flood::step::Quantity;

@@ -1,10 +1,6 @@
 //! Arrival maps of floods whose arrival is known.
 
-#![expect(clippy::unwrap_used, reason = "a test ends where something is wrong")]
-
-mod floods;
-
-use floods::{WET, around, arrival, disc, errors, flood, front, ring, roughness, springs};
+use crate::known::{WET, around, arrival, disc, errors, flood, front, ring, roughness, springs};
 use freshet_flood::arrival::{ArrivalBuilder, ArrivalError, ArrivalMap, ArrivalOptions};
 use freshet_flood::step::{Quantity, Step};
 use freshet_hydro::grid::Grid;

@@ -1,7 +1,5 @@
 //! Floods whose arrival is known, and what is measured of arrival maps.
 
-#![allow(dead_code, clippy::allow_attributes, reason = "each test uses its own part of it")]
-
 use freshet_flood::arrival::{ArrivalBuilder, ArrivalMap, ArrivalOptions};
 use freshet_flood::step::{Quantity, Step};
 use freshet_hydro::grid::Grid;

@@ -1,13 +1,9 @@
 //! Floods converted, and read again.
 
-#![expect(clippy::unwrap_used, reason = "a test ends where something is wrong")]
-
-mod floods;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use floods::{WET, flood, ring};
+use crate::known::{WET, flood, ring};
 use freshet_flood::arrival::ArrivalOptions;
 use freshet_flood::conversion::{ConversionError, Crop, Options, Part, Progress, convert};
 use freshet_flood::esri_ascii::EsriGrid;
@@ -313,13 +309,13 @@ fn the_real_flood_is_converted_whole() {
     }
     // Water springs up near the north end. Elsewhere it does so only in pools that a film thinner than the threshold feeds.
     let arrival = &maps.arrival().unwrap().after;
-    let mut springs = floods::springs(maps.arrival().unwrap());
+    let mut springs = crate::known::springs(maps.arrival().unwrap());
     springs.sort_by(|a, b| arrival.get(*a).unwrap().total_cmp(arrival.get(*b).unwrap()));
     assert!(springs[0].as_vec2().distance(vec2(66.0, 24.0)) < 8.0 && springs.len() < 10, "{springs:?}");
     for spring in springs {
         // The step before the water came, if it did not come just at a step.
         let index = maps.step_before(f64::from(*arrival.get(spring).unwrap()) - 0.1);
         let before = maps.depth(index).unwrap();
-        assert!(floods::around(spring, before.size()).all(|cell| *before.get(cell).unwrap() < WET), "{spring}");
+        assert!(crate::known::around(spring, before.size()).all(|cell| *before.get(cell).unwrap() < WET), "{spring}");
     }
 }
