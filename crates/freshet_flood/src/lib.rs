@@ -18,6 +18,7 @@ pub mod interpolation;
 pub mod maps;
 pub mod maxima;
 mod neighbours;
+pub mod playback;
 pub mod raster;
 pub mod step;
 pub mod steps;

@@ -1,9 +1,7 @@
 //! Reads parts of a flood before they are shown, in the background.
-use super::{
-    FloodMaps, MapsError,
-    part::{Ground, Part},
-};
+use super::{FloodMaps, MapsError};
 use bevy::tasks::{AsyncComputeTaskPool, Task, block_on};
+use freshet_flood::playback::{Ground, PlayedInterval};
 use std::sync::Arc;
 
 /// What of a flood is in memory.
@@ -11,8 +9,8 @@ use std::sync::Arc;
 pub struct Ahead {
     maps: Option<Arc<FloodMaps>>,
     ground: Option<Arc<Ground>>,
-    parts: Vec<Arc<Part>>,
-    reading: Option<(usize, Task<Result<Part, MapsError>>)>,
+    parts: Vec<Arc<PlayedInterval>>,
+    reading: Option<(usize, Task<Result<PlayedInterval, MapsError>>)>,
     /// Parts that cannot be read.
     failed: Vec<usize>,
 }
@@ -25,7 +23,7 @@ impl Ahead {
         maps: &Arc<FloodMaps>,
         [wanted, next]: [usize; 2],
         waits: bool,
-    ) -> (Option<Arc<Part>>, Option<MapsError>) {
+    ) -> (Option<Arc<PlayedInterval>>, Option<MapsError>) {
         if !self.maps.as_ref().is_some_and(|known| Arc::ptr_eq(known, maps)) {
             *self = Self { maps: Some(maps.clone()), ..Self::default() };
         }
@@ -58,7 +56,7 @@ impl Ahead {
 
     fn read(&mut self, maps: Arc<FloodMaps>, index: usize) {
         let ground = self.ground.clone();
-        let task = AsyncComputeTaskPool::get().spawn(async move { Part::read(&maps, ground, index) });
+        let task = AsyncComputeTaskPool::get().spawn(async move { PlayedInterval::read(&maps, ground, index) });
         self.reading = Some((index, task));
     }
 

@@ -16,7 +16,6 @@
 //!
 //! Steps are read ahead in a background task: two at a time, and those around the ones that are shown stay in memory.
 mod ahead;
-mod part;
 mod play;
 mod settings;
 

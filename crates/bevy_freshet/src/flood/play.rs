@@ -1,13 +1,14 @@
 //! Plays floods: their time, and the water at it.
-use super::{Flood, FloodMaps, ahead::Ahead, part};
+use super::{Flood, FloodMaps, ahead::Ahead};
 use crate::{
     body::{Water, WaterSimulation},
     report::Reported,
     schedule::WaterSystems,
-    simulation::{ShallowFrame, Simulated, simulate_on_cpu, simulate_on_gpu},
+    simulation::{ShallowFrame, Simulate, Simulated},
 };
 use bevy::{prelude::*, render::RenderApp};
 use freshet_flood::flow_map::MOST_CELLS;
+use freshet_flood::playback;
 use freshet_hydro::shallow_water::Field;
 use std::sync::Arc;
 
@@ -38,10 +39,10 @@ pub(crate) struct FloodPlugin;
 impl Plugin for FloodPlugin {
     fn build(&self, app: &mut App) {
         app.add_observer(end_flood)
-            .add_systems(FixedFirst, (advance, show).chain().after(simulate_on_cpu).before(WaterSystems::Resolve))
+            .add_systems(FixedFirst, (advance, show).chain().after(Simulate).before(WaterSystems::Resolve))
             .add_systems(
                 PostUpdate,
-                show.after(TransformSystems::Propagate).after(simulate_on_gpu).before(WaterSystems::Resolve),
+                show.after(TransformSystems::Propagate).after(Simulate).before(WaterSystems::Resolve),
             );
         if app.get_sub_app(RenderApp).is_some() {
             app.add_systems(PostUpdate, draw.after(show).before(WaterSystems::Resolve));
@@ -127,7 +128,7 @@ impl FloodState {
             return shown.field.clone();
         }
         let size = maps.georeference().size;
-        let dry = self.dry.take().filter(|dry| dry.size() == size).unwrap_or_else(|| Arc::new(part::dry(maps)));
+        let dry = self.dry.take().filter(|dry| dry.size() == size).unwrap_or_else(|| Arc::new(playback::dry(maps)));
         self.dry.insert(dry).clone()
     }
 

@@ -31,7 +31,7 @@ mod window;
 pub(crate) use deposits::{Deposits, SilhouetteCell, Stroke};
 pub(crate) use frame::FieldFrame;
 pub(crate) use progress::FieldProgress;
-pub(crate) use shallow_water::{ShallowFrame, ShallowWaterPlugin, Simulated, simulate_on_cpu, simulate_on_gpu};
+pub(crate) use shallow_water::{ShallowFrame, ShallowWaterPlugin, Simulate, Simulated};
 pub(crate) use tiles::{NARROWEST, REACH};
 pub(crate) use window::FieldWindow;
 

@@ -90,7 +90,7 @@ struct Applied {
 /// A water and all that its simulation is made by.
 #[derive(QueryData)]
 #[query_data(mutable)]
-pub(crate) struct Waters {
+pub(super) struct Waters {
     entity: Entity,
     resolved: &'static ResolvedWater,
     settings: &'static WaterSimulation,
@@ -124,7 +124,7 @@ impl Simulated {
 }
 
 /// Advances the waters that are simulated on the CPU, in every fixed step.
-pub(crate) fn simulate_on_cpu(
+pub(super) fn simulate_on_cpu(
     time: Res<Time>,
     adapter: Option<Res<RenderAdapterInfo>>,
     device: Option<Res<RenderDevice>>,
@@ -151,7 +151,7 @@ pub(crate) fn simulate_on_cpu(
 }
 
 /// Takes what the GPU has come to, and asks it for the time of the frame.
-pub(crate) fn simulate_on_gpu(
+pub(super) fn simulate_on_gpu(
     time: Res<Time>,
     adapter: Option<Res<RenderAdapterInfo>>,
     device: Option<Res<RenderDevice>>,

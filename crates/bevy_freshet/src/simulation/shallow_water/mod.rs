@@ -29,7 +29,7 @@ mod state;
 mod tests;
 mod usable;
 
-pub(crate) use driver::{Simulated, simulate_on_cpu, simulate_on_gpu};
+pub(crate) use driver::Simulated;
 #[cfg(feature = "rapier")]
 pub(crate) use exchange::Exchange;
 pub(crate) use frame::{GpuWork, Ground, ShallowFrame, ShallowWork, StartState};
@@ -50,6 +50,10 @@ use bevy::{
     shader::load_shader_library,
 };
 
+/// When waters are simulated; what is played back comes after it.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Simulate;
+
 /// Simulates every water that has a [`WaterSimulation`](crate::body::WaterSimulation); on the CPU in an app without a GPU device.
 pub(crate) struct ShallowWaterPlugin;
 
@@ -57,10 +61,10 @@ impl Plugin for ShallowWaterPlugin {
     fn build(&self, app: &mut App) {
         app.add_observer(control::ask_for_step)
             .add_observer(control::ask_for_reset)
-            .add_systems(FixedFirst, driver::simulate_on_cpu.before(WaterSystems::Resolve));
+            .add_systems(FixedFirst, driver::simulate_on_cpu.in_set(Simulate).before(WaterSystems::Resolve));
         if app.get_sub_app(RenderApp).is_some() {
-            let simulate = driver::simulate_on_gpu.after(TransformSystems::Propagate).before(WaterSystems::Resolve);
-            app.add_plugins(StagesPlugin).add_systems(PostUpdate, simulate);
+            let simulate = driver::simulate_on_gpu.in_set(Simulate).after(TransformSystems::Propagate);
+            app.add_plugins(StagesPlugin).add_systems(PostUpdate, simulate.before(WaterSystems::Resolve));
         }
     }
 }
