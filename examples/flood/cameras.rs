@@ -109,7 +109,10 @@ pub fn record(
     if !keys.just_pressed(KeyCode::KeyK) {
         return;
     }
-    let key = Keyframe { time: flood.usable_time(), eye: camera.0.translation, target: camera.1.target };
+    // Also where a path leads it, and the orbit is elsewhere.
+    let (pose, orbit) = *camera;
+    let target = pose.translation + orbit.distance * pose.forward();
+    let key = Keyframe { time: flood.usable_time(), eye: pose.translation, target };
     recorded.0.retain(|other| other.time != key.time);
     recorded.0.push(key);
     recorded.0.sort_by(|a, b| a.time.total_cmp(&b.time));

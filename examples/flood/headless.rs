@@ -1,7 +1,8 @@
 //! Pictures and films without a window. Each frame is that of its time in the data, so that it is the same whenever it is drawn.
-use crate::{cameras::CameraPath, common, viewer::clock};
+use crate::{cameras::CameraPath, common};
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_freshet::{flood::Flood, panel::OrbitCamera};
+use freshet_flood::duration::clock;
 use image::RgbImage;
 use std::{
     fs::File,
@@ -80,9 +81,9 @@ pub fn run(mut app: App, plan: &Plan) -> AppExit {
     let times = plan.times();
     let step = plan.speed / f64::from(plan.fps);
     for before in (1..=plan.lead).rev() {
-        show(&mut app, times[0] - f64::from(before) * step, frame);
+        show(&mut app, times[0] - f64::from(before) * step);
     }
-    match draw(&mut app, plan, &times, frame) {
+    match draw(&mut app, plan, &times) {
         Ok(()) => AppExit::Success,
         Err(problem) => {
             error!("{problem}");
@@ -92,35 +93,30 @@ pub fn run(mut app: App, plan: &Plan) -> AppExit {
 }
 
 /// Draws the frame at a time of the data.
-fn show(app: &mut App, time: f64, frame: Duration) {
+fn show(app: &mut App, time: f64) {
     let world = app.world_mut();
-    let path = world.remove_resource::<CameraPath>();
-    if let Some(path) = &path {
+    if let Some(led) = world.get_resource::<CameraPath>().map(|path| path.at(time)) {
         let mut cameras = world.query::<(&mut Transform, &mut OrbitCamera)>();
         for (mut pose, mut orbit) in cameras.iter_mut(world) {
             orbit.enabled = false;
-            *pose = path.at(time);
+            *pose = led;
         }
-    }
-    if let Some(path) = path {
-        world.insert_resource(path);
     }
     for mut flood in world.query::<&mut Flood>().iter_mut(world) {
         flood.time = time;
     }
-    app.insert_resource(TimeUpdateStrategy::ManualDuration(frame));
     app.update();
 }
 
-fn draw(app: &mut App, plan: &Plan, times: &[f64], frame: Duration) -> Result<(), String> {
+fn draw(app: &mut App, plan: &Plan, times: &[f64]) -> Result<(), String> {
     make_folder(&plan.output)?;
     let mut animation = match &plan.output {
-        Output::Gif(path) => Some(Animation::new(path, plan.fps)?),
+        Output::Gif(path) => Some(Animation::new(path, plan.fps)),
         _ => None,
     };
     let start = Instant::now();
     for (number, time) in times.iter().enumerate() {
-        show(app, *time, frame);
+        show(app, *time);
         let picture = common::screenshot(app)?;
         match (&plan.output, &mut animation) {
             (Output::Picture(path), _) => save(&picture, path)?,
@@ -167,8 +163,8 @@ struct Animation {
 }
 
 impl Animation {
-    fn new(path: &Path, fps: u32) -> Result<Self, String> {
-        Ok(Self { path: path.into(), fps, encoder: None, frames: 0 })
+    fn new(path: &Path, fps: u32) -> Self {
+        Self { path: path.into(), fps, encoder: None, frames: 0 }
     }
 
     fn add(&mut self, picture: &RgbImage) -> Result<(), String> {

@@ -1,8 +1,9 @@
 //! What is under the pointer.
-use crate::viewer::{Viewer, clock};
+use crate::viewer::Viewer;
 use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContexts, egui, input::EguiWantsInput};
 use bevy_freshet::{flood::FloodState, panel::OrbitCamera};
+use freshet_flood::duration::clock;
 
 /// The ground that is seen at a place of the picture, world.
 pub fn ground(camera: &Camera, pose: &GlobalTransform, at: Vec2, viewer: &Viewer) -> Option<Vec3> {

@@ -78,6 +78,11 @@ fn main() -> AppExit {
     let maps = Arc::new(FloodMaps::open(folder).unwrap_or_else(|problem| common::fail(problem)));
     let viewer =
         Viewer::new(maps, arguments.color, arguments.exaggeration).unwrap_or_else(|problem| common::fail(problem));
+    if let (Some(from), Some(to)) = (arguments.from, arguments.to)
+        && from > to
+    {
+        common::fail("a film ends (--to) after it begins (--from)");
+    }
     let plan = plan(&arguments, &viewer.maps);
     let camera = arguments.options.camera.as_deref();
     let (path, camera) = match camera.filter(|name| name.ends_with(".ron")) {

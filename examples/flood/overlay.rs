@@ -1,11 +1,12 @@
 //! What is written over the picture: clock, legend, scale bar and north arrow. The same in a window and in pictures.
-use crate::viewer::{Coloring, HAZARDS, Viewer, clock, hazard_color, round};
+use crate::viewer::{Coloring, HAZARDS, Viewer, hazard_color, round};
 use bevy::prelude::*;
 use bevy_egui::{
     EguiContexts,
     egui::{Align2, Color32, FontId, LayerId, Mesh, Order, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2 as size},
 };
 use bevy_freshet::{flood::Flood, panel::OrbitCamera, surface::ViewScale};
+use freshet_flood::duration::clock;
 
 const INK: Color32 = Color32::WHITE;
 const SHADE: Color32 = Color32::from_black_alpha(150);

@@ -1,11 +1,12 @@
 //! The timeline: play, step, loop, speed and scrub; colouring, cameras and exaggeration.
 use crate::{
     cameras,
-    viewer::{Coloring, Viewer, clock},
+    viewer::{Coloring, Viewer},
 };
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, egui};
 use bevy_freshet::{flood::Flood, panel::OrbitCamera};
+use freshet_flood::duration::clock;
 
 /// Draws it at the bottom of the window.
 pub fn draw(

@@ -141,10 +141,3 @@ pub fn round(value: f32) -> f32 {
         .find(|round| *round >= value * 0.999)
         .unwrap_or(10.0 * power)
 }
-
-/// A time as h:mm:ss.
-pub fn clock(seconds: f64) -> String {
-    let whole = seconds.abs().round() as u64;
-    let sign = if seconds < 0.0 { "−" } else { "" };
-    format!("{sign}{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
-}

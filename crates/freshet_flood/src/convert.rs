@@ -8,13 +8,14 @@ use anyhow::{Context, Result};
 use clap::Args;
 use freshet_flood::arrival::ArrivalOptions;
 use freshet_flood::conversion::{Amount, Crop, Options, Part, Progress, Summary, convert};
+use freshet_flood::duration::clock;
 use freshet_flood::raster::Raster;
 use freshet_flood::steps::Steps;
 use freshet_flood::terrain::Resampling;
 use glam::DVec2;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::source::{StepArguments, clock};
+use crate::source::StepArguments;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -1,4 +1,4 @@
-//! Durations as people write them.
+//! Durations as people write and read them.
 
 use thiserror::Error;
 
@@ -33,4 +33,11 @@ pub fn seconds(text: &str) -> Result<f64, DurationError> {
         .map(|((_, seconds), number)| number * seconds)
         .filter(|seconds| seconds.is_finite() && *seconds >= 0.0)
         .ok_or_else(|| DurationError(text.into()))
+}
+
+/// Seconds as hours, minutes and whole seconds: `1:02:03`, `-0:30:00`.
+pub fn clock(seconds: f64) -> String {
+    let whole = seconds.abs().round() as u64;
+    let sign = if seconds < 0.0 && whole > 0 { "-" } else { "" };
+    format!("{sign}{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use freshet_flood::arrival::{ArrivalBuilder, ArrivalOptions};
-use freshet_flood::duration;
+use freshet_flood::duration::{self, clock};
 use freshet_flood::esri_ascii::EsriGrid;
 use freshet_flood::interpolation::{Interval, quantity_at};
 use freshet_flood::maps::FloodMaps;
@@ -13,7 +13,7 @@ use freshet_flood::step::{Quantity, Step};
 use freshet_flood::steps::Steps;
 use freshet_hydro::grid::Grid;
 
-use crate::source::{StepArguments, clock};
+use crate::source::StepArguments;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -5,12 +5,14 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
-use freshet_flood::duration;
+use freshet_flood::duration::clock;
 use freshet_flood::georeference::Georeference;
 use freshet_flood::incremental::{Dialect, Header};
 use freshet_flood::raster::{Format, Raster};
 use freshet_flood::step::{Quantity, Step};
-use freshet_flood::steps::{Options, Steps, StepsError, Times};
+use freshet_flood::steps::{Steps, StepsError, Times};
+
+use crate::source::StepArguments;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -25,21 +27,8 @@ Examples:
 pub struct Arguments {
     /// An ESRI ASCII grid, a GeoTIFF or an incremental file, or a folder of rasters.
     path: PathBuf,
-    /// Time between the steps of a folder, as in 30min, 1.5h or 90 (seconds).
-    #[arg(long, value_parser = duration::seconds, conflicts_with = "times")]
-    interval: Option<f64>,
-    /// Times of the steps of a folder: a CSV table of file or step number, and time.
-    #[arg(long)]
-    times: Option<PathBuf>,
-    /// Files whose names begin with PREFIX are of QUANTITY: depth, speed, level, east or north.
-    #[arg(long, value_name = "PREFIX=QUANTITY", value_parser = series)]
-    series: Vec<(String, Quantity)>,
-}
-
-fn series(text: &str) -> Result<(String, Quantity), String> {
-    let (prefix, quantity) = text.split_once('=').ok_or("expected PREFIX=QUANTITY, as in dm=depth")?;
-    let quantity: Quantity = quantity.parse().map_err(|error| format!("{error}"))?;
-    Ok((prefix.into(), quantity))
+    #[command(flatten)]
+    source: StepArguments,
 }
 
 /// Describes the file or folder.
@@ -70,19 +59,10 @@ pub fn run(arguments: &Arguments) -> Result<String> {
 }
 
 /// The steps, and whether their times are known.
-fn open(arguments: &Arguments) -> Result<(Steps, bool), StepsError> {
-    let Arguments { path, interval, times, series } = arguments;
-    let times = match (interval, times) {
-        (Some(interval), _) => Times::Every(*interval),
-        (_, Some(table)) => Times::Table(table.clone()),
-        _ => Times::OfFile,
-    };
-    let options = Options { times, series: series.clone() };
-    match Steps::open(path, &options) {
+fn open(Arguments { path, source }: &Arguments) -> Result<(Steps, bool), StepsError> {
+    match source.open(path) {
         // They are counted instead.
-        Err(StepsError::NoTimes { .. }) => {
-            Steps::open(path, &Options { times: Times::Every(1.0), ..options }).map(|steps| (steps, false))
-        }
+        Err(StepsError::NoTimes { .. }) => source.open_with(path, Times::Every(1.0)).map(|steps| (steps, false)),
         steps => steps.map(|steps| (steps, true)),
     }
 }
@@ -150,13 +130,6 @@ fn describe_steps(text: &mut String, steps: &Steps, has_times: bool) -> Result<(
     writeln!(text, "steps    {count}{until}")?;
     write!(text, "{time:>10}  quantity     cells   above 0      least       most      volume m³\n{rows}")?;
     Ok(())
-}
-
-/// Hours, minutes and seconds.
-fn clock(seconds: f64) -> String {
-    let whole = seconds.abs().round() as u64;
-    let sign = if seconds < 0.0 && whole > 0 { "-" } else { "" };
-    format!("{sign}{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
 }
 
 /// What the values of a raster are.

@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
 use clap::Args;
 use freshet_flood::duration;
 use freshet_flood::step::Quantity;
-use freshet_flood::steps::{Options, Steps, Times};
+use freshet_flood::steps::{Options, Steps, StepsError, Times};
 
 /// How steps are found. Incremental files tell it themselves.
 #[derive(Args)]
@@ -24,13 +23,24 @@ pub struct StepArguments {
 
 impl StepArguments {
     /// Finds the steps of a folder or file.
-    pub fn open(&self, path: &Path) -> Result<Steps> {
+    ///
+    /// # Errors
+    /// [`StepsError`] as of [`Steps::open`].
+    pub fn open(&self, path: &Path) -> Result<Steps, StepsError> {
         let times = match (self.interval, &self.times) {
             (Some(interval), _) => Times::Every(interval),
             (_, Some(table)) => Times::Table(table.clone()),
             _ => Times::OfFile,
         };
-        Ok(Steps::open(path, &Options { times, series: self.series.clone() })?)
+        self.open_with(path, times)
+    }
+
+    /// The same with other times.
+    ///
+    /// # Errors
+    /// [`StepsError`] as of [`Steps::open`].
+    pub fn open_with(&self, path: &Path, times: Times) -> Result<Steps, StepsError> {
+        Steps::open(path, &Options { times, series: self.series.clone() })
     }
 }
 
@@ -38,10 +48,4 @@ fn series(text: &str) -> Result<(String, Quantity), String> {
     let (prefix, quantity) = text.split_once('=').ok_or("expected PREFIX=QUANTITY, as in dm=depth")?;
     let quantity: Quantity = quantity.parse().map_err(|error| format!("{error}"))?;
     Ok((prefix.into(), quantity))
-}
-
-/// Seconds as hours, minutes and seconds: 1:02:03.
-pub fn clock(seconds: f64) -> String {
-    let whole = seconds.round().max(0.0) as u64;
-    format!("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
 }
