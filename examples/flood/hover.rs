@@ -4,6 +4,7 @@ use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContexts, egui, input::EguiWantsInput};
 use bevy_freshet::{flood::FloodState, panel::OrbitCamera};
 use freshet_flood::duration::clock;
+use freshet_hydro::shallow_water::WaterCells;
 
 /// The ground that is seen at a place of the picture, world.
 pub fn ground(camera: &Camera, pose: &GlobalTransform, at: Vec2, viewer: &Viewer) -> Option<Vec3> {
@@ -48,7 +49,7 @@ pub fn tell(
     let east = map.corner.x + f64::from(from_north_west.x);
     let north = map.corner.y + f64::from(viewer.terrain.extent().y - from_north_west.y);
     let mut text = format!("E {east:.0}  N {north:.0}\nelevation {:.2} m", viewer.terrain.values()[index]);
-    match state.field().map(|field| field.cells()[index]).filter(|water| water.y > 0.0) {
+    match state.moment().map(|moment| moment.cell(index)).filter(|water| water.y > 0.0) {
         Some(water) => {
             text += &format!("\ndepth {:.2} m\nspeed {:.2} m/s", water.y / viewer.exaggeration, water.zw().length());
         }

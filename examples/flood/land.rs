@@ -8,7 +8,7 @@ use bevy::{
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 use bevy_freshet::{flood::FloodState, prelude::*};
-use freshet_hydro::grid::Grid;
+use freshet_hydro::{grid::Grid, shallow_water::WaterCells};
 
 /// Cells along a side of a drawn piece.
 const PIECE: u32 = 64;
@@ -132,12 +132,14 @@ pub fn paint(
     mut materials: ResMut<Assets<StandardMaterial>>,
     state: Single<&FloodState>,
 ) {
-    let (Some(field), Some(time)) = (state.field(), state.time()) else { return };
+    let Some(moment) = state.moment() else { return };
+    let time = moment.time();
     if viewer.coloring == Coloring::Water || drape.painted == Some((time, viewer.coloring)) {
         return;
     }
-    let cells = field.cells().iter().zip(&drape.shaded).enumerate();
-    let pixels = cells.flat_map(|(index, (cell, shaded))| {
+    let cells = drape.shaded.iter().enumerate();
+    let pixels = cells.flat_map(|(index, shaded)| {
+        let cell = moment.cell(index);
         let wet = (cell.y > 0.0).then(|| viewer.color(index, cell.y / viewer.exaggeration, cell.zw().length()));
         wet.flatten().map_or(*shaded, |color| Srgba::from(color).to_u8_array())
     });

@@ -22,7 +22,7 @@ pub use lighting::WaterLighting;
 pub use optics::{Fresnel, WaterOptics};
 pub(crate) use resolved::{ResolvedBed, ResolvedWater};
 pub use running::{Balance, ResetSimulation, SimulationState, StepSimulation};
-pub(crate) use simulated::{ResolvedSimulation, SimulatedArea};
+pub(crate) use simulated::{ResolvedSimulation, SimulatedArea, SimulatedWater};
 pub use simulation::{
     CLOSED, DomainSide, Edge, Series, SimulationBackend, SimulationStart, WaterEdge, WaterEdges, WaterSimulation,
     WaterSource, WaterSources, WaterWall, WaterWalls,

@@ -1,15 +1,25 @@
 //! Simulated water as others see it, and where it passes into the water around it.
 use bevy::prelude::*;
-use freshet_hydro::shallow_water::{Field, FieldSample};
+use freshet_flood::playback::Moment;
+use freshet_hydro::shallow_water::{Field, FieldSample, WaterCells};
 use std::sync::Arc;
 
 /// The simulated water of a [`ResolvedWater`](super::ResolvedWater).
 #[derive(Clone, Debug)]
 pub(crate) struct ResolvedSimulation {
-    pub field: Arc<Field>,
+    pub water: SimulatedWater,
     /// How old it is, s.
     pub age: f32,
     pub area: SimulatedArea,
+}
+
+/// Where simulated water is looked up.
+#[derive(Clone, Debug)]
+pub(crate) enum SimulatedWater {
+    /// What a simulation has come to.
+    Field(Arc<Field>),
+    /// A moment of a flood.
+    Moment(Arc<Moment>),
 }
 
 /// The rectangle of a water that is simulated.
@@ -62,15 +72,69 @@ impl SimulatedArea {
     }
 }
 
+impl SimulatedWater {
+    /// Columns and rows.
+    pub fn size(&self) -> UVec2 {
+        match self {
+            Self::Field(field) => field.size(),
+            Self::Moment(moment) => moment.size(),
+        }
+    }
+
+    /// Side of a cell, m.
+    pub fn cell_size(&self) -> f32 {
+        match self {
+            Self::Field(field) => field.cell_size(),
+            Self::Moment(moment) => moment.cell_size(),
+        }
+    }
+
+    /// The lowest and the highest level, m.
+    pub fn levels(&self) -> (f32, f32) {
+        match self {
+            Self::Field(field) => field.levels(),
+            Self::Moment(moment) => moment.levels(),
+        }
+    }
+
+    /// The steepest slope of the level.
+    pub fn steepest(&self) -> f32 {
+        match self {
+            Self::Field(field) => field.steepest(),
+            Self::Moment(moment) => moment.steepest(),
+        }
+    }
+
+    /// The greatest speed, m/s.
+    pub fn fastest(&self) -> f32 {
+        match self {
+            Self::Field(field) => field.fastest(),
+            Self::Moment(moment) => moment.fastest(),
+        }
+    }
+
+    /// Whether a wall stands above it somewhere.
+    pub fn has_walls(&self) -> bool {
+        matches!(self, Self::Field(field) if !field.walls().is_empty())
+    }
+
+    fn sample(&self, place: Vec2, age: f32) -> Option<FieldSample> {
+        match self {
+            Self::Field(field) => field.sample(place, age),
+            Self::Moment(moment) => moment.sample(place, age),
+        }
+    }
+}
+
 impl ResolvedSimulation {
     /// The simulated water at local `place`; nothing where it is dry.
     pub fn sample(&self, place: Vec2) -> Option<FieldSample> {
-        self.field.sample(place - self.area.center, self.age)
+        self.water.sample(place - self.area.center, self.age)
     }
 
     /// Lowest and highest level, m, with the still water around it.
     pub fn levels(&self) -> (f32, f32) {
-        let (lowest, highest) = self.field.levels();
+        let (lowest, highest) = self.water.levels();
         if self.area.is_part() { (lowest.min(0.0), highest.max(0.0)) } else { (lowest, highest) }
     }
 }

@@ -1,14 +1,13 @@
 //! Reads parts of a flood before they are shown, in the background.
 use super::{FloodMaps, MapsError};
 use bevy::tasks::{AsyncComputeTaskPool, Task, block_on};
-use freshet_flood::playback::{Ground, PlayedInterval};
+use freshet_flood::playback::PlayedInterval;
 use std::sync::Arc;
 
 /// What of a flood is in memory.
 #[derive(Default)]
 pub struct Ahead {
     maps: Option<Arc<FloodMaps>>,
-    ground: Option<Arc<Ground>>,
     parts: Vec<Arc<PlayedInterval>>,
     reading: Option<(usize, Task<Result<PlayedInterval, MapsError>>)>,
     /// Parts that cannot be read.
@@ -29,17 +28,17 @@ impl Ahead {
         }
         let mut failed = None;
         loop {
-            let found = self.parts.iter().find(|part| part.index == wanted).cloned();
+            let found = self.get(wanted);
             let missing = !self.failed.contains(&wanted) && found.is_none();
             failed = self.receive(missing && waits).err().or(failed);
             if self.reading.is_none() {
-                let is_known = |index: usize| self.failed.contains(&index) || self.has(index);
+                let is_known = |index: usize| self.failed.contains(&index) || self.get(index).is_some();
                 if let Some(index) = [wanted, next].into_iter().find(|index| !is_known(*index)) {
                     self.read(maps.clone(), index);
                 }
             }
             if !(missing && waits) {
-                self.parts.retain(|part| part.index.abs_diff(wanted) <= 1 || part.index == next);
+                self.parts.retain(|part| part.index().abs_diff(wanted) <= 1 || part.index() == next);
                 return (found, failed);
             }
         }
@@ -50,13 +49,14 @@ impl Ahead {
         self.failed.contains(&index)
     }
 
-    fn has(&self, index: usize) -> bool {
-        self.parts.iter().any(|part| part.index == index)
+    /// A part, if it is there.
+    pub fn get(&self, index: usize) -> Option<Arc<PlayedInterval>> {
+        self.parts.iter().find(|part| part.index() == index).cloned()
     }
 
     fn read(&mut self, maps: Arc<FloodMaps>, index: usize) {
-        let ground = self.ground.clone();
-        let task = AsyncComputeTaskPool::get().spawn(async move { PlayedInterval::read(&maps, ground, index) });
+        let known = self.parts.clone();
+        let task = AsyncComputeTaskPool::get().spawn(async move { PlayedInterval::read(&maps, &known, index) });
         self.reading = Some((index, task));
     }
 
@@ -65,7 +65,6 @@ impl Ahead {
         let Some((index, task)) = self.reading.take_if(|(_, task)| waits || task.is_finished()) else { return Ok(()) };
         match block_on(task) {
             Ok(part) => {
-                self.ground = Some(part.ground.clone());
                 self.parts.push(Arc::new(part));
                 Ok(())
             }

@@ -1,14 +1,14 @@
 //! Plays floods: their time, and the water at it.
 use super::{Flood, FloodMaps, ahead::Ahead};
 use crate::{
-    body::{Water, WaterSimulation},
+    body::{SimulatedWater, Water, WaterSimulation},
     report::Reported,
     schedule::WaterSystems,
     simulation::{ShallowFrame, Simulate, Simulated},
 };
 use bevy::{prelude::*, render::RenderApp};
 use freshet_flood::flow_map::MOST_CELLS;
-use freshet_flood::playback;
+use freshet_flood::playback::{BANK, Moment, PlayedInterval};
 use freshet_hydro::shallow_water::Field;
 use std::sync::Arc;
 
@@ -17,8 +17,8 @@ use std::sync::Arc;
 pub struct FloodState {
     ahead: Ahead,
     shown: Option<Shown>,
-    /// What is shown as long as nothing is there: no water.
-    dry: Option<Arc<Field>>,
+    /// The part that is shown next, if it is there.
+    next: Option<Arc<PlayedInterval>>,
     /// Whether its time is not there yet.
     is_late: bool,
 }
@@ -26,11 +26,7 @@ pub struct FloodState {
 /// What is shown of a flood.
 struct Shown {
     maps: Arc<FloodMaps>,
-    time: f64,
-    factor: f32,
-    field: Arc<Field>,
-    /// Whether its surface has a velocity upwards.
-    rises: bool,
+    moment: Arc<Moment>,
 }
 
 /// Plays every [`Flood`].
@@ -102,19 +98,19 @@ fn show(
             reported.warn(entity, "Water::size", format_args!("is {found}, that of its Flood {expected}"));
         }
         playback.show(entity, flood, maps, factor, time.delta_secs_f64(), &mut reported);
-        simulated.play(Some(playback.water(maps)));
+        simulated.play(Some((playback.water(), Flood::size(maps))));
     }
 }
 
 impl FloodState {
     /// Time of what is shown, s in the data; `None` until the first steps are there.
     pub fn time(&self) -> Option<f64> {
-        self.shown.as_ref().map(|shown| shown.time)
+        self.shown.as_ref().map(|shown| shown.moment.time())
     }
 
-    /// Level, depth and velocity of every cell as they are shown, [`Flood::exaggeration`] times as high.
-    pub fn field(&self) -> Option<&Arc<Field>> {
-        self.shown.as_ref().map(|shown| &shown.field)
+    /// The water that is shown, [`Flood::exaggeration`] times as high: any of its cells can be looked up.
+    pub fn moment(&self) -> Option<&Arc<Moment>> {
+        self.shown.as_ref().map(|shown| &shown.moment)
     }
 
     /// Whether the water of the flood's time is not there yet.
@@ -122,14 +118,12 @@ impl FloodState {
         self.is_late
     }
 
-    /// The water that is shown.
-    fn water(&mut self, maps: &FloodMaps) -> Arc<Field> {
-        if let Some(shown) = &self.shown {
-            return shown.field.clone();
+    /// The water that is shown; none as long as nothing is there.
+    fn water(&self) -> SimulatedWater {
+        match &self.shown {
+            Some(shown) => SimulatedWater::Moment(shown.moment.clone()),
+            None => SimulatedWater::Field(Arc::new(Field::dry(BANK))),
         }
-        let size = maps.georeference().size;
-        let dry = self.dry.take().filter(|dry| dry.size() == size).unwrap_or_else(|| Arc::new(playback::dry(maps)));
-        self.dry.insert(dry).clone()
     }
 
     /// Makes the water of the flood's time, if that is not shown already; the last frame or fixed step was `elapsed` (s) ago.
@@ -153,8 +147,10 @@ impl FloodState {
         }
         // What stands does not rise.
         let stands = !flood.playing || flood.speed == 0.0;
-        let is_shown = |shown: &Shown| shown.time == time && shown.factor == factor && !(stands && shown.rises);
-        if self.shown.as_ref().is_some_and(is_shown) {
+        self.next = self.ahead.get(parts[1]).filter(|_| parts[1] != parts[0]);
+        let is_shown =
+            |shown: &Moment| shown.time() == time && shown.factor() == factor && !(stands && shown.is_rising());
+        if self.shown.as_ref().is_some_and(|shown| is_shown(&shown.moment)) {
             self.is_late = false;
             return;
         }
@@ -162,14 +158,16 @@ impl FloodState {
         self.is_late = part.is_none() && !self.ahead.has_failed(parts[0]);
         let Some(part) = part else { return };
         // A jump is no rise.
-        let is_steady = |shown: &&Shown| {
-            let most = f64::from(flood.speed.abs()) * elapsed * 1.5;
-            !stands && shown.factor == factor && (shown.time - time).abs() <= most
+        let most = f64::from(flood.speed.abs()) * elapsed * 1.5;
+        let is_steady =
+            |shown: &&Shown| !stands && shown.moment.factor() == factor && (shown.moment.time() - time).abs() <= most;
+        let before = self.shown.as_ref().filter(is_steady).map(|shown| shown.moment.time());
+        let moment = Moment::new(part, time, factor);
+        let moment = match before {
+            Some(before) => moment.rising_since(before, elapsed),
+            None => moment,
         };
-        let before = self.shown.as_ref().filter(is_steady).map(|shown| (&*shown.field, elapsed));
-        let rises = before.is_some();
-        let field = Arc::new(part.at(time, factor, before));
-        self.shown = Some(Shown { maps: maps.clone(), time, factor, field, rises });
+        self.shown = Some(Shown { maps: maps.clone(), moment: Arc::new(moment) });
     }
 }
 
@@ -192,15 +190,15 @@ fn draw(
     mut commands: Commands,
     mut images: ResMut<Assets<Image>>,
     mut reported: ResMut<Reported>,
-    mut floods: Query<(Entity, &Flood, &mut Simulated), Played>,
+    mut floods: Query<(Entity, &Flood, &FloodState, &mut Simulated), Played>,
 ) {
-    for (entity, flood, mut simulated) in &mut floods {
+    for (entity, flood, playback, mut simulated) in &mut floods {
         let size = flood.maps().map_or(UVec2::ZERO, |maps| maps.georeference().size);
         if size.max_element() > MOST_CELLS {
             reported.warn(entity, "Flood", format_args!("has {size} cells, more than {MOST_CELLS}; it is not drawn"));
             continue;
         }
-        match simulated.played_frame(&mut images) {
+        match simulated.played_frame(playback.next.clone(), &mut images) {
             Some(frame) => _ = commands.entity(entity).try_insert(frame),
             None => _ = commands.entity(entity).try_remove::<ShallowFrame>(),
         }

@@ -94,7 +94,7 @@ fn bisect(mut from: f32, mut to: f32, first: f32, height: impl Fn(f32) -> f32) -
 fn steepest_slope(water: &ResolvedWater) -> f32 {
     let steepness = water.waves.total_steepness().min(0.95);
     let shelving = if water.bed.is_some() || water.ice.is_some() { 0.3 } else { 0.0 };
-    let simulated = water.simulated.as_ref().map_or(0.0, |simulated| simulated.field.steepest() + SHORE);
+    let simulated = water.simulated.as_ref().map_or(0.0, |simulated| simulated.water.steepest() + SHORE);
     steepness / (1.0 - steepness) + shelving + simulated
 }
 

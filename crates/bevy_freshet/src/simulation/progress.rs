@@ -190,7 +190,7 @@ impl FieldProgress {
         let fastest = match (&water.simulated, &water.flow) {
             (Some(simulated), map) => {
                 let around = map.as_ref().filter(|_| simulated.area.is_part());
-                simulated.field.fastest().max(around.map_or(0.0, |(map, scale)| textures.fastest(map) * scale.abs()))
+                simulated.water.fastest().max(around.map_or(0.0, |(map, scale)| textures.fastest(map) * scale.abs()))
             }
             (None, Some((map, scale))) => textures.fastest(map) * scale.abs(),
             (None, None) => 0.0,

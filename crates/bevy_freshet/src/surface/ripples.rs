@@ -60,7 +60,7 @@ pub(crate) fn advance_ripples(
             (Some(simulated), map) => {
                 let around = map.as_ref().filter(|_| simulated.area.is_part());
                 let around = around.map_or(0.0, |(map, scale)| ground.fastest(map) * scale.abs());
-                simulated.field.fastest().max(around).max(0.25).log2().ceil().exp2()
+                simulated.water.fastest().max(around).max(0.25).log2().ceil().exp2()
             }
             (None, Some((map, scale))) => ground.fastest(map) * scale.abs(),
             (None, None) => 0.0,

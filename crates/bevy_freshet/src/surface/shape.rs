@@ -98,7 +98,7 @@ fn spacing_for(water: &ResolvedWater, error: f32) -> f32 {
     let ice = water.ice.as_ref().filter(|ice| highest.max(ice.deepest_drop()) > error);
     let bed = bed.map(|bed| bed.elevations.cell_size());
     let ice = ice.map(|ice| ice.order.cell_size());
-    let simulated = water.simulated.as_ref().map(|simulated| simulated.field.cell_size());
+    let simulated = water.simulated.as_ref().map(|simulated| simulated.water.cell_size());
     spacings.chain(bed).chain(ice).chain(simulated).fold(f32::INFINITY, f32::min)
 }
 

@@ -244,12 +244,12 @@ pub(crate) fn write_ground(
     }
     if let Some(simulated) = &water.simulated {
         gpu.flags |= GpuSurface::SIMULATED;
-        if !simulated.field.walls().is_empty() {
+        if simulated.water.has_walls() {
             gpu.flags |= GpuSurface::WALLED;
         }
         gpu.simulated_age = simulated.age;
-        gpu.simulated_size = simulated.field.size().as_vec2();
-        gpu.simulated_cell = simulated.field.cell_size();
+        gpu.simulated_size = simulated.water.size().as_vec2();
+        gpu.simulated_cell = simulated.water.cell_size();
         gpu.simulated_center = simulated.area.center;
         gpu.simulated_half_size = simulated.area.half_size;
         gpu.simulated_per_blend = simulated.area.per_blend;

@@ -8,3 +8,4 @@ mod convert_command;
 mod fronts_between_steps;
 mod known;
 mod leave_one_out;
+mod playback;

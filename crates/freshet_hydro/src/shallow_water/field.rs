@@ -1,11 +1,10 @@
 //! The surface of a simulated water as others see it: level, depth and velocity at any place, smooth over the wet cells.
-use super::ShallowWater;
-use crate::grid::Grid;
+use super::{
+    ShallowWater,
+    cells::{self, FieldSample, WET, WaterCells},
+};
 use glam::{UVec2, Vec2, Vec4, Vec4Swizzles};
 use std::sync::Arc;
-
-/// Depth, m, from which on a cell counts as wet for those who look at the water.
-pub const WET: f32 = 1e-3;
 
 /// A state of a [`ShallowWater`] for looking up places, with how fast its level changes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,35 +23,6 @@ pub struct Field {
     highest: f32,
     steepest: f32,
     fastest: f32,
-}
-
-/// The water of a [`Field`] at one place.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FieldSample {
-    /// Level, m.
-    pub level: f32,
-    /// Slope of the level along x and z.
-    pub slope: Vec2,
-    /// Velocity, m/s.
-    pub velocity: Vec2,
-    /// ∂η/∂t, m/s.
-    pub rising: f32,
-}
-
-/// The shares of four cells around a place: bilinear, of wet cells only, summing to one; nothing if all are dry.
-fn wet_shares(cells: [Vec4; 4], shares: [f32; 4]) -> Option<[f32; 4]> {
-    let mut wet = shares;
-    for (share, cell) in wet.iter_mut().zip(cells) {
-        *share = if cell.y > WET { *share } else { 0.0 };
-    }
-    let sum = wet[0] + wet[1] + wet[2] + wet[3];
-    (sum > 1e-4).then(|| wet.map(|share| share / sum))
-}
-
-/// Level that a cell counts with beside water at `level`: a dry cell above it is a bank, up which water does not climb; one
-/// below it is ground towards which a front falls.
-fn beside(cell: Vec4, level: f32) -> f32 {
-    if cell.y > WET { cell.x } else { cell.x.min(level) }
 }
 
 /// ∂η/∂t of `cells`, m/s, since `before`, `elapsed` (s) earlier; 0 where it was dry, or nothing is known.
@@ -83,15 +53,10 @@ impl Field {
         field
     }
 
-    /// A state that was not simulated here: level (m), depth (m) and velocity (m/s) of every cell, rising as it has since `before`,
-    /// which was `elapsed` (s) earlier. Without walls.
-    pub fn from_cells(cells: Grid<Vec4>, before: Option<&Self>, elapsed: f64) -> Self {
-        let (size, cell_size, cells) = (cells.size(), cells.cell_size(), cells.into_values());
-        let rising = rising(&cells, before, elapsed);
-        let mut field = Self { size, cell_size, cells, rising, ..Self::default() };
-        field.find_slopes();
-        field.find_bounds();
-        field
+    /// No water: one cell of dry ground at `level` (m).
+    pub fn dry(level: f32) -> Self {
+        let (cells, rising, slopes) = (vec![Vec4::new(level, 0.0, 0.0, 0.0)], vec![0.0], vec![Vec2::ZERO]);
+        Self { size: UVec2::ONE, cell_size: 1.0, cells, rising, slopes, ..Self::default() }
     }
 
     fn find_walls(&mut self, water: &ShallowWater) {
@@ -108,31 +73,8 @@ impl Field {
         }
     }
 
-    /// Whether a wall stands above the water at the `axis` face (0 eastern, 1 southern) of a cell.
-    fn has_wall(&self, index: usize, axis: usize) -> bool {
-        self.walls.get(index).is_some_and(|wall| wall[axis])
-    }
-
     fn find_slopes(&mut self) {
-        self.slopes = (0..self.cells.len()).map(|index| self.slope_of(index)).collect();
-    }
-
-    /// Slope of the level in a cell.
-    fn slope_of(&self, index: usize) -> Vec2 {
-        let (columns, rows) = (self.size.x as usize, self.size.y as usize);
-        let (column, row) = (index % columns, index / columns);
-        let here = self.cells[index];
-        if here.y <= WET {
-            return Vec2::ZERO;
-        }
-        // The level across the `axis` face of the cell `of`, if there is one without a wall.
-        let level = |exists: bool, at: usize, of: usize, axis: usize| {
-            if exists && !self.has_wall(of, axis) { beside(self.cells[at], here.x) } else { here.x }
-        };
-        let (west, north) = (index.wrapping_sub(1), index.wrapping_sub(columns));
-        let x = level(column + 1 < columns, index + 1, index, 0) - level(column > 0, west, west, 0);
-        let z = level(row + 1 < rows, index + columns, index, 1) - level(row > 0, north, north, 1);
-        Vec2::new(x, z) / (2.0 * self.cell_size)
+        self.slopes = (0..self.cells.len()).map(|index| cells::slope(self, index)).collect();
     }
 
     /// Takes over the levels of these cells of `water`, whose water is as it was: bodies have come into them, or left.
@@ -156,7 +98,7 @@ impl Field {
             let (north, west) = (index.checked_sub(columns), index.checked_sub(1));
             let around = [north, west, Some(index), Some(index + 1), Some(index + columns)];
             for index in around.into_iter().flatten().filter(|index| *index < count) {
-                field.slopes[index] = field.slope_of(index);
+                field.slopes[index] = cells::slope(field, index);
                 field.steepest = field.steepest.max(field.slopes[index].length());
             }
         }
@@ -220,43 +162,40 @@ impl Field {
     ///
     /// Outside the outermost cell centres the nearest point on their rectangle counts.
     pub fn sample(&self, place: Vec2, age: f32) -> Option<FieldSample> {
-        let last = self.size - 1;
-        let p = (place / self.cell_size + (self.size.as_vec2() / 2.0 - 0.5)).clamp(Vec2::ZERO, last.as_vec2());
-        let low = p.floor().as_uvec2();
-        let high = (low + 1).min(last);
-        let index = |x: u32, z: u32| (z * self.size.x + x) as usize;
-        let around = [index(low.x, low.y), index(high.x, low.y), index(low.x, high.y), index(high.x, high.y)];
-        let mut t = p - p.floor();
-        // Nothing is seen through a wall: the water before it is as it is at its own cells.
-        if self.has_wall(around[0], 0) || self.has_wall(around[2], 0) {
-            t.x = (t.x + 0.5).floor();
-        }
-        if self.has_wall(around[0], 1) || self.has_wall(around[1], 1) {
-            t.y = (t.y + 0.5).floor();
-        }
-        let shares = [(1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y];
-        let cells = around.map(|index| self.cells[index]);
-        let wet = wet_shares(cells, shares)?;
-        let mut sample = FieldSample::default();
-        let mut mean = 0.0;
-        for k in 0..4 {
-            mean += wet[k] * cells[k].x;
-            sample.slope += wet[k] * self.slopes[around[k]];
-            sample.velocity += wet[k] * cells[k].zw();
-            sample.rising += wet[k] * self.rising[around[k]];
-        }
-        for k in 0..4 {
-            sample.level += shares[k] * beside(cells[k], mean);
-        }
-        sample.level += age * sample.rising;
-        Some(sample)
+        cells::sample(self, place, age)
+    }
+}
+
+impl WaterCells for Field {
+    fn size(&self) -> UVec2 {
+        self.size
+    }
+
+    fn cell_size(&self) -> f32 {
+        self.cell_size
+    }
+
+    fn cell(&self, index: usize) -> Vec4 {
+        self.cells[index]
+    }
+
+    fn rising(&self, index: usize) -> f32 {
+        self.rising[index]
+    }
+
+    fn slope(&self, index: usize) -> Vec2 {
+        self.slopes[index]
+    }
+
+    fn has_wall(&self, index: usize, axis: usize) -> bool {
+        self.walls.get(index).is_some_and(|wall| wall[axis])
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shallow_water::DomainSide;
+    use crate::{grid::Grid, shallow_water::DomainSide};
     use glam::{uvec2, vec2};
 
     /// A lake whose shore lies at x = 0, with a tilted surface.

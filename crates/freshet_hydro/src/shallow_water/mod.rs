@@ -2,6 +2,7 @@
 
 mod advance;
 mod balance;
+mod cells;
 mod displaced;
 mod edge;
 mod edges;
@@ -18,11 +19,12 @@ mod strip;
 
 pub use advance::Advance;
 pub use balance::Balance;
+pub use cells::{FieldSample, WET, WaterCells, sample, slope};
 pub use displaced::{Displaced, Displacement, spread};
 pub use edge::DomainSide;
 pub use edges::{Edge, EdgePart};
 pub use exchange::{Forcing, Restored};
-pub use field::{Field, FieldSample, WET};
+pub use field::Field;
 pub use push::Push;
 pub use scheme::{CLOSED, FILM};
 pub use series::Series;

@@ -9,8 +9,8 @@ use super::{
 };
 use crate::{
     body::{
-        ResolvedBed, ResolvedSimulation, ResolvedWater, SimulatedArea, SimulationBackend, SimulationStart,
-        SimulationState, WaterEdges, WaterSimulation, WaterSources, WaterWalls,
+        ResolvedBed, ResolvedSimulation, ResolvedWater, SimulatedArea, SimulatedWater, SimulationBackend,
+        SimulationStart, SimulationState, WaterEdges, WaterSimulation, WaterSources, WaterWalls,
     },
     report::Reported,
 };
@@ -119,7 +119,7 @@ impl Simulated {
     pub fn resolve(&self) -> Option<ResolvedSimulation> {
         let Some(simulation) = &self.simulation else { return self.played.clone() };
         let age = simulation.on_gpu.as_ref().map_or(0.0, OnGpu::age) as f32;
-        Some(ResolvedSimulation { field: simulation.field.clone(), age, area: simulation.area })
+        Some(ResolvedSimulation { water: SimulatedWater::Field(simulation.field.clone()), age, area: simulation.area })
     }
 }
 

@@ -1,6 +1,6 @@
 //! What floating bodies take from a simulated water and give back to it.
 use super::driver::Simulated;
-use crate::body::ResolvedWater;
+use crate::body::{ResolvedWater, SimulatedWater};
 use bevy::prelude::*;
 use freshet_hydro::shallow_water::{Displaced, Displacement, Field, Push};
 
@@ -49,7 +49,7 @@ impl Simulated {
         if Field::follow(&mut simulation.field, &simulation.water, cells)
             && let Some(simulated) = &mut resolved.simulated
         {
-            simulated.field = simulation.field.clone();
+            simulated.water = SimulatedWater::Field(simulation.field.clone());
         }
     }
 

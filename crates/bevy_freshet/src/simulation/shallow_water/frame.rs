@@ -10,6 +10,7 @@ use bevy::{
         sync_component::SyncComponent,
     },
 };
+use freshet_flood::playback::{Moment, PlayedInterval};
 use freshet_hydro::shallow_water::Field;
 use std::sync::Arc;
 
@@ -21,13 +22,15 @@ pub(crate) struct ShallowFrame {
     pub pictures: [AssetId<Image>; 2],
 }
 
-/// Who simulates.
+/// Who works out the water.
 #[derive(Clone, Debug)]
 pub(crate) enum ShallowWork {
     /// The stages, which also draw the pictures.
     Gpu(Box<GpuWork>),
     /// The CPU, which has come to this.
     Cpu(Arc<Field>),
+    /// Nobody: a stage draws a moment of a flood. The interval is the one that is shown after it, if it is known.
+    Played(Arc<Moment>, Option<Arc<PlayedInterval>>),
 }
 
 /// Input of the stages.

@@ -6,6 +6,7 @@
 //! border    cells at the edges take it with what is outside       │ frame may take
 //! push      bodies push the cells that they cover                 ┘
 //! show      pictures for the surface's shader                     once a frame
+//! show      the same pictures of a flood that is played back, in place of all of these
 //! coarsen   a coarser level of them, also of those from the CPU   for each level
 //! ```
 //!
@@ -77,6 +78,7 @@ impl Plugin for StagesPlugin {
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "scheme.wgsl");
         load_shader_library!(app, "cells.wgsl");
+        load_shader_library!(app, "played/played.wgsl");
         embedded_asset!(app, "border.wgsl");
         embedded_asset!(app, "coarsen.wgsl");
         embedded_asset!(app, "push.wgsl");
@@ -87,17 +89,18 @@ impl Plugin for StagesPlugin {
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         render_app
             .init_resource::<plan::Plans>()
-            .add_systems(RenderStartup, (stages::create_stages, state::forget_states))
+            .add_systems(RenderStartup, (stages::create_stages, state::forget_states, played::forget_played))
             .add_systems(
                 Render,
                 (
-                    (plan::plan_steps, pictures::draw_pictures).in_set(RenderSystems::PrepareBindGroups),
+                    (plan::plan_steps, (played::plan_played, pictures::draw_pictures).chain())
+                        .in_set(RenderSystems::PrepareBindGroups),
                     returned::map_copies.in_set(RenderSystems::Cleanup),
                 ),
             )
             .add_systems(
                 RenderGraph,
-                (plan::run_steps, pictures::run_levels)
+                (plan::run_steps, played::run_played, pictures::run_levels)
                     .chain()
                     .in_set(RenderGraphSystems::Render)
                     .before(camera_driver),

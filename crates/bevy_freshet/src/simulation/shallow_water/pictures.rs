@@ -2,6 +2,7 @@
 //! whoever has drawn the finest.
 use super::{
     frame::{ShallowFrame, ShallowWork},
+    played::Played,
     stages::Stages,
 };
 use bevy::{
@@ -55,13 +56,13 @@ pub(super) fn draw_pictures(
     device: Res<RenderDevice>,
     queue: Res<RenderQueue>,
     images: Res<RenderAssets<GpuImage>>,
-    mut waters: Query<(Entity, &ShallowFrame, Option<&mut Levels>)>,
+    mut waters: Query<(Entity, &ShallowFrame, Option<&mut Levels>, Option<&Played>)>,
     orphans: Query<Entity, (With<Levels>, Without<ShallowFrame>)>,
 ) {
     for entity in &orphans {
         commands.entity(entity).remove::<Levels>();
     }
-    for (entity, frame, levels) in &mut waters {
+    for (entity, frame, levels, played) in &mut waters {
         let [Some(cells), Some(slopes)] = frame.pictures.map(|picture| images.get(picture)) else { continue };
         let pictures = [cells, slopes];
         let textures = pictures.map(|picture| picture.texture.id());
@@ -79,6 +80,10 @@ pub(super) fn draw_pictures(
             ShallowWork::Gpu(work) => {
                 levels.drawn = None;
                 levels.is_old |= work.steps > 0;
+            }
+            ShallowWork::Played(..) => {
+                levels.drawn = None;
+                levels.is_old |= played.is_some_and(Played::is_new);
             }
             ShallowWork::Cpu(field) if levels.drawn.as_ref().is_some_and(|drawn| Arc::ptr_eq(drawn, field)) => {}
             ShallowWork::Cpu(field) => {

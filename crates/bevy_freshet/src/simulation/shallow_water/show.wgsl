@@ -1,6 +1,10 @@
 // Stage: pictures of the water for the surface's shader. The twin is `Field` in `freshet_hydro::shallow_water`.
+#ifdef PLAYED
+#import freshet::simulation::shallow_water::played::{numbers, primitive as cell_at}
+#else
 #import freshet::simulation::shallow_water::bindings::{numbers, state, bed, extras}
 #import freshet::simulation::shallow_water::cells::primitive
+#endif
 
 @group(1) @binding(0) var picture: texture_storage_2d<rgba32float, write>;  // level, depth (m), velocity (m/s); see `dry`
 @group(1) @binding(1) var slopes: texture_storage_2d<rgba16float, write>;   // slope of the level; 1 where a wall stands above it in the east and south
@@ -9,13 +13,19 @@ const WET: f32 = 1e-3; // units: m
 const EAST: vec2<i32> = vec2(1, 0);
 const SOUTH: vec2<i32> = vec2(0, 1);
 
+#ifndef PLAYED
+// Depth, level and velocity of the cell `at`.
+fn cell_at(at: vec2<i32>) -> vec4<f32> {
+    return primitive(at.y * numbers.size.x + at.x);
+}
+#endif
+
 // Whether a wall stands above the water between cell `at` and the one `to` its east (1, 0) or south (0, 1).
 fn has_wall(at: vec2<i32>, to: vec2<i32>) -> bool {
 #ifdef WALLS
     if all(at >= vec2(0)) && all(at + to < numbers.size) {
         let i = at.y * numbers.size.x + at.x;
-        let there = primitive(i + to.y * numbers.size.x + to.x).y;
-        return select(extras[i].y, extras[i].x, to.x > 0) >= max(primitive(i).y, there);
+        return select(extras[i].y, extras[i].x, to.x > 0) >= max(cell_at(at).y, cell_at(at + to).y);
     }
 #endif
     return false;
@@ -27,7 +37,7 @@ fn beside(level: f32, at: vec2<i32>) -> f32 {
     if any(at < vec2(0)) || any(at >= numbers.size) {
         return level;
     }
-    let there = primitive(at.y * numbers.size.x + at.x);
+    let there = cell_at(at);
     return select(min(there.y, level), there.y, there.x > WET);
 }
 
@@ -46,7 +56,7 @@ fn dry(at: vec2<i32>, here: vec2<f32>) -> vec4<f32> {
     for (var k = 0; k < 9; k++) {
         let there = at + vec2(k % 3, k / 3) - 1;
         if all(there >= vec2(0)) && all(there < numbers.size) {
-            let cell = primitive(there.y * numbers.size.x + there.x);
+            let cell = cell_at(there);
             level += select(0.0, cell.y, cell.x > WET);
             count += select(0.0, 1.0, cell.x > WET);
         }
@@ -60,7 +70,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(at >= numbers.size) {
         return;
     }
-    let here = primitive(at.y * numbers.size.x + at.x);
+    let here = cell_at(at);
     var shown = vec4(here.y, here.x, here.zw);
     var steep = vec2(0.0);
     if here.x <= WET {

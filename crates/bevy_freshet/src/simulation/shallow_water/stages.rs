@@ -1,5 +1,8 @@
 //! The pipelines of the stages.
-use super::numbers::{GpuClock, GpuEdge, GpuLeaving, GpuPush, GpuRaised, GpuShallow};
+use super::{
+    numbers::{GpuClock, GpuEdge, GpuLeaving, GpuPush, GpuRaised, GpuShallow},
+    played::played_layout,
+};
 use bevy::{
     asset::{AssetServer, load_embedded_asset},
     prelude::*,
@@ -35,6 +38,9 @@ pub(super) struct Stages {
     /// Without and with walls; binds the pictures as well.
     pub show: [CachedComputePipelineId; 2],
     pub pictures: BindGroupLayoutDescriptor,
+    /// The same pictures of a flood that is played back.
+    pub show_played: CachedComputePipelineId,
+    pub played_layout: BindGroupLayoutDescriptor,
     pub coarsen: CachedComputePipelineId,
     pub coarsen_layout: BindGroupLayoutDescriptor,
 }
@@ -80,16 +86,17 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
     };
     let pictures = pictures_layout();
     let shader = load_embedded_asset!(&*assets, "show.wgsl");
-    let show = [&[][..], &["WALLS"]].map(|defines: &[&str]| {
+    let show = |input: &BindGroupLayoutDescriptor, defines: &[&str]| {
         cache.queue_compute_pipeline(ComputePipelineDescriptor {
             label: Some("water_shallow_show".into()),
-            layout: vec![layout.clone(), pictures.clone()],
+            layout: vec![input.clone(), pictures.clone()],
             shader: shader.clone(),
             shader_defs: defines.iter().copied().map(ShaderDefVal::from).collect(),
             entry_point: Some("main".into()),
             ..default()
         })
-    });
+    };
+    let played_layout = played_layout();
     let (push_layout, raise_layout, coarsen_layout) = (push_layout(), raise_layout(), coarsen_layout());
     let lone = |label: &'static str, layout: &BindGroupLayoutDescriptor, shader: Handle<Shader>| {
         cache.queue_compute_pipeline(ComputePipelineDescriptor {
@@ -110,7 +117,9 @@ pub(super) fn create_stages(mut commands: Commands, assets: Res<AssetServer>, ca
         push_layout,
         raise,
         raise_layout,
-        show,
+        show: [show(&layout, &[]), show(&layout, &["WALLS"])],
+        show_played: show(&played_layout, &["PLAYED"]),
+        played_layout,
         pictures,
         coarsen,
         coarsen_layout,
