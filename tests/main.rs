@@ -29,6 +29,7 @@ mod exchange_changes;
 mod features;
 mod fields;
 mod flood;
+mod flood_cost;
 mod flow;
 mod foam;
 mod glitter;
