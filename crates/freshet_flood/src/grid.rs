@@ -31,7 +31,7 @@ pub struct Arguments {
     /// A converted flood, a folder of rasters, or an incremental file.
     path: PathBuf,
     /// Time since the beginning of the data, as in 1.5h, 90min or 5400 (seconds).
-    #[arg(long, value_name = "TIME", value_parser = duration::seconds)]
+    #[arg(long, value_name = "TIME", value_parser = duration::time, allow_hyphen_values = true)]
     at: f64,
     /// What is printed: depth (m), speed (m/s), level (m), east or north (m/s).
     #[arg(long, default_value = "depth")]

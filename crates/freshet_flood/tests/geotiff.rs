@@ -105,6 +105,29 @@ fn values_of_every_kind_are_read() {
     assert_eq!(below_zero.grid.values()[..2], [-1.0, -300.0]);
 }
 
+/// Files that GDAL 3 wrote: 40 × 24 cells with the value ¼ column − 1½ row, of which one has no data. Whole numbers are four times that.
+#[test]
+fn files_with_tiles_and_predictors_are_read_as_gdal_writes_them() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/geotiffs");
+    for (name, factor) in [
+        ("tiles_deflate_predictor_3.tif", 1.0),
+        ("tiles_lzw_predictor_3.tif", 1.0),
+        ("strips_deflate_predictor_2_i16.tif", 4.0),
+        ("cog.tif", 1.0),
+    ] {
+        let raster = geotiff::read(folder.join(name)).unwrap();
+        let place = raster.georeference;
+        assert_eq!((place.corner, place.cell_size, place.size), (dvec2(100.0, 100.0), 5.0, uvec2(40, 24)), "{name}");
+        for (cell, value) in raster.grid.cells().zip(raster.grid.values()) {
+            let expected = factor * (0.25 * cell.x as f32 - 1.5 * cell.y as f32);
+            match cell == uvec2(5, 3) {
+                true => assert!(value.is_nan(), "{name}"),
+                false => assert_eq!(*value, expected, "{name}: {cell}"),
+            }
+        }
+    }
+}
+
 #[test]
 fn every_spelling_of_a_place_is_the_same() {
     let expected = read(&placed().of::<Gray32Float>(SIZE, &VALUES)).georeference;

@@ -74,7 +74,7 @@ fn row(line: &str) -> Result<Row, (usize, &'static str)> {
     let separator = if line.contains(';') { ';' } else { ',' };
     let (key, time) = line.rsplit_once(separator).ok_or((1, "a file or step and its time, with a comma between"))?;
     let [key, text] = [key, time].map(|field| field.trim().trim_matches('"').trim());
-    let time = duration::seconds(text).map_err(|_| (key.len() + 2, "a time such as 90, 90s, 30min, 1.5h or 1d"))?;
+    let time = duration::time(text).map_err(|_| (key.len() + 2, "a time such as 90, 90s, 30min, 1.5h or 1d"))?;
     Ok(Row { key: key.to_lowercase(), time })
 }
 
