@@ -161,6 +161,7 @@ fn grids_are_the_models_own_at_steps_and_agree_with_the_maps_between() {
     let level = grid("out --at 200s --quantity level").grid;
     assert!((level.get(uvec2(12, 9)).unwrap() - 12.4).abs() < 0.02);
     for (arguments, expected) in [
+        ("out --at -30min", "the flood runs from 0:00:00 to 0:04:00: there is nothing at -0:30:00"),
         ("out --at 1h", "the flood runs from 0:00:00 to 0:04:00: there is nothing at 1:00:00"),
         ("out --at 1min --quantity speed", "converted without speed"),
         ("steps --interval 1min --at 90s --quantity speed", "steps tells no speed"),

@@ -1,6 +1,6 @@
 // Stage: pictures of the water for the surface's shader. The twin is `Field` in `freshet_hydro::shallow_water`.
 #ifdef PLAYED
-#import freshet::simulation::shallow_water::played::{numbers, primitive as cell_at}
+#import freshet::simulation::shallow_water::played::{numbers, primitive}
 #else
 #import freshet::simulation::shallow_water::bindings::{numbers, state, bed, extras}
 #import freshet::simulation::shallow_water::cells::primitive
@@ -13,12 +13,32 @@ const WET: f32 = 1e-3; // units: m
 const EAST: vec2<i32> = vec2(1, 0);
 const SOUTH: vec2<i32> = vec2(0, 1);
 
-#ifndef PLAYED
-// Depth, level and velocity of the cell `at`.
-fn cell_at(at: vec2<i32>) -> vec4<f32> {
-    return primitive(at.y * numbers.size.x + at.x);
-}
+// Invocations along a side of a workgroup, and cells along that of its tile: those beside its own belong to it.
+const GROUP: i32 = 8;
+const TILE: i32 = GROUP + 2;
+
+// Depth, level and velocity of the cells of a workgroup, each worked out once.
+var<workgroup> tile: array<vec4<f32>, TILE * TILE>;
+// The north-western cell of the tile.
+var<private> corner: vec2<i32>;
+
+fn fill_tile(first: u32) {
+    for (var k = i32(first); k < TILE * TILE; k += GROUP * GROUP) {
+        let at = clamp(corner + vec2(k % TILE, k / TILE), vec2(0), numbers.size - 1);
+#ifdef PLAYED
+        tile[k] = primitive(at);
+#else
+        tile[k] = primitive(at.y * numbers.size.x + at.x);
 #endif
+    }
+    workgroupBarrier();
+}
+
+// Depth, level and velocity of a cell of the tile.
+fn cell_at(at: vec2<i32>) -> vec4<f32> {
+    let within = at - corner;
+    return tile[within.y * TILE + within.x];
+}
 
 // Whether a wall stands above the water between cell `at` and the one `to` its east (1, 0) or south (0, 1).
 fn has_wall(at: vec2<i32>, to: vec2<i32>) -> bool {
@@ -65,8 +85,14 @@ fn dry(at: vec2<i32>, here: vec2<f32>) -> vec4<f32> {
 }
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+fn main(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) first: u32,
+) {
     let at = vec2<i32>(id.xy);
+    corner = vec2<i32>(group.xy) * GROUP - 1;
+    fill_tile(first);
     if any(at >= numbers.size) {
         return;
     }
