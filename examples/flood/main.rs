@@ -7,7 +7,7 @@
 mod common;
 
 mod cameras;
-mod headless;
+mod film;
 mod hover;
 mod land;
 mod overlay;
@@ -24,7 +24,7 @@ use bevy_freshet::{
 use cameras::CameraPath;
 use clap::Parser;
 use common::{Canvas, Options};
-use headless::{Output, Plan};
+use film::{Output, Plan};
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
@@ -49,8 +49,11 @@ struct Arguments {
     /// Seconds of the flood in a second.
     #[arg(long, default_value_t = 60.0, value_parser = factor)]
     speed: f32,
-    /// Write a film: a PNG for each frame (film/%05d.png), or a GIF.
-    #[arg(long, value_parser = headless::film, conflicts_with = "out")]
+    /// Write a film: a video (film.mp4), an animated picture (film.gif), or a picture for each frame (film/%05d.png).
+    ///
+    /// Videos are AV1 in MP4, in BT.709 and at least 16 pixels wide and high, with a frame to go to every 2 s; players since about 2020
+    /// know AV1. A film that ends early, by an error or by Ctrl-C, leaves no file, but the pictures that are done.
+    #[arg(long, value_parser = Output::film, conflicts_with = "out")]
     film: Option<Output>,
     /// Frames in a second of the film.
     #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=100))]
@@ -78,6 +81,12 @@ fn main() -> AppExit {
     let maps = Arc::new(FloodMaps::open(folder).unwrap_or_else(|problem| common::fail(problem)));
     let viewer =
         Viewer::new(maps, arguments.color, arguments.exaggeration).unwrap_or_else(|problem| common::fail(problem));
+    let (first, last) = (viewer.maps.times()[0], viewer.maps.times()[viewer.maps.times().len() - 1]);
+    for (option, time) in [("--from", arguments.from), ("--to", arguments.to)] {
+        if let Some(time) = time.filter(|time| !(first..=last).contains(time)) {
+            common::fail(format!("{option}: expected a time of the flood, {first} s to {last} s, found {time} s"));
+        }
+    }
     if let (Some(from), Some(to)) = (arguments.from, arguments.to)
         && from > to
     {
@@ -113,7 +122,7 @@ fn main() -> AppExit {
         app.insert_resource(path);
     }
     if let Some(plan) = plan {
-        return headless::run(app, &plan);
+        return film::run(app, &plan);
     }
     app.add_systems(Update, (timeline::keys, cameras::pan, cameras::record, follow_path))
         .add_systems(EguiPrimaryContextPass, (timeline::draw, hover::tell).after(overlay::draw));
