@@ -2,7 +2,7 @@
 //!
 //! `flood [DIR]` plays a folder that `freshet-flood convert` made, without one the flood in `assets/flood/played`. `--out` draws
 //! a picture, `--film` a film. `--camera` chooses from `slope`, `top` and `plain`, or reads keyframes from a file that ends in
-//! `.ron`; K records such in a window.
+//! `.ron`; K records such in a window. F flies.
 #[path = "../common/mod.rs"]
 mod common;
 
@@ -11,6 +11,7 @@ mod film;
 mod hover;
 mod land;
 mod overlay;
+mod steering;
 mod timeline;
 mod viewer;
 
@@ -124,7 +125,8 @@ fn main() -> AppExit {
     if let Some(plan) = plan {
         return film::run(app, &plan);
     }
-    app.add_systems(Update, (timeline::keys, cameras::pan, cameras::record, follow_path))
+    app.add_plugins(steering::SteeringPlugin)
+        .add_systems(Update, (timeline::keys, cameras::pan, cameras::record))
         .add_systems(EguiPrimaryContextPass, (timeline::draw, hover::tell).after(overlay::draw));
     common::run(app)
 }
@@ -188,21 +190,6 @@ fn show_water(mut commands: Commands, viewer: Res<Viewer>, cameras: Query<(Entit
             Coloring::Water => {}
             _ if !without => _ = commands.entity(camera).insert((NoWater, Tonemapping::None)),
             _ => {}
-        }
-    }
-}
-
-/// In a window a path leads the camera while the flood is played.
-fn follow_path(
-    path: Option<Res<CameraPath>>,
-    flood: Single<&Flood>,
-    mut cameras: Query<(&mut Transform, &mut OrbitCamera)>,
-) {
-    let Some(path) = path else { return };
-    for (mut pose, mut orbit) in &mut cameras {
-        orbit.enabled = !flood.playing;
-        if flood.playing {
-            *pose = path.at(flood.usable_time());
         }
     }
 }
