@@ -2,12 +2,13 @@
 //!
 //! `flood [DIR]` plays a folder that `freshet-flood convert` made, without one the flood in `assets/flood/played`. `--out` draws
 //! a picture, `--film` a film. `--camera` chooses from `slope`, `top` and `plain`, or reads keyframes from a file that ends in
-//! `.ron`; K records such in a window. F flies.
+//! `.ron`; K records such in a window. A click on the ground, or `--mark`, shows the depth there over time; F flies.
 #[path = "../common/mod.rs"]
 mod common;
 
 mod cameras;
 mod film;
+mod gauges;
 mod hover;
 mod land;
 mod overlay;
@@ -15,7 +16,9 @@ mod steering;
 mod timeline;
 mod viewer;
 
-use bevy::{camera::Hdr, core_pipeline::tonemapping::Tonemapping, light::CascadeShadowConfigBuilder, prelude::*};
+use bevy::{
+    camera::Hdr, core_pipeline::tonemapping::Tonemapping, light::CascadeShadowConfigBuilder, math::DVec2, prelude::*,
+};
 use bevy_egui::{EguiPrimaryContextPass, PrimaryEguiContext};
 use bevy_freshet::{
     flood::FloodMaps,
@@ -26,6 +29,7 @@ use cameras::CameraPath;
 use clap::Parser;
 use common::{Canvas, Options};
 use film::{Output, Plan};
+use gauges::GaugesPlugin;
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
@@ -65,6 +69,9 @@ struct Arguments {
     /// Time in the data at which the film ends.
     #[arg(long, value_parser = freshet_flood::duration::seconds)]
     to: Option<f64>,
+    /// Show the depth over time at a place of the map: easting and northing, E,N. For more places again.
+    #[arg(long, value_name = "E,N", value_parser = gauges::place, allow_hyphen_values = true)]
+    mark: Vec<DVec2>,
     #[command(flatten)]
     options: Options,
 }
@@ -105,8 +112,9 @@ fn main() -> AppExit {
     let mut options = arguments.options.clone();
     options.out = options.out.or(plan.as_ref().map(|_| PathBuf::new()));
     let mut app = common::app("bevy_freshet: flood", &options);
-    app.add_plugins((WaterPlugin, SkyPlugin, WaterPanelPlugin { visible: false, ..default() }))
-        .insert_resource(viewer)
+    let gauges = GaugesPlugin { places: arguments.mark.clone(), is_headless: plan.is_some() };
+    app.insert_resource(viewer)
+        .add_plugins((WaterPlugin, SkyPlugin, WaterPanelPlugin { visible: false, ..default() }, gauges))
         .insert_resource(arguments)
         .init_resource::<cameras::Recorded>()
         .add_systems(

@@ -43,7 +43,7 @@ pub fn draw(
             }
         });
         let moves = if steering.flies { FLIGHT } else { "drag: orbit   right drag: pan   wheel: zoom   F: fly" };
-        ui.weak(format!("{moves}\nspace: play   arrows: step   K: keyframe   F1: water"));
+        ui.weak(format!("{moves}   click: depth over time\nspace: play   arrows: step   K: keyframe   F1: water"));
     });
     Ok(())
 }
