@@ -86,3 +86,77 @@ fn around(camera: &Camera, pose: &Transform, before: &OrbitCamera, viewer: &View
     let target = pose.translation + distance * pose.forward();
     OrbitCamera { target, distance, ..OrbitCamera::through(pose, 0.0) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::viewer::Coloring;
+    use bevy_freshet::flood::FloodMaps;
+    use std::{path::Path, sync::Arc};
+
+    fn app() -> (App, Entity) {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/flood");
+        let maps = Arc::new(FloodMaps::open(folder.join("played")).expect("the sample"));
+        let mut app = App::new();
+        app.init_resource::<ButtonInput<KeyCode>>().init_resource::<EguiWantsInput>().init_resource::<Steering>();
+        app.insert_resource(Viewer::new(maps.clone(), Coloring::Water, 1.0).expect("the sample"));
+        app.add_systems(Update, (toggle, steer).chain());
+        let mut flood = Flood::new(maps);
+        flood.playing = false;
+        app.world_mut().spawn(flood);
+        let orbit = OrbitCamera { distance: 300.0, ..default() };
+        let camera = app.world_mut().spawn((Camera::default(), orbit.pose(), orbit)).id();
+        app.update();
+        (app, camera)
+    }
+
+    fn press(app: &mut App, key: KeyCode) {
+        let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+        keys.release(key);
+        keys.clear();
+        keys.press(key);
+        app.update();
+        app.world_mut().resource_mut::<ButtonInput<KeyCode>>().clear();
+    }
+
+    fn orbit(app: &App, camera: Entity) -> OrbitCamera {
+        *app.world().get::<OrbitCamera>(camera).expect("an orbit")
+    }
+
+    #[test]
+    fn a_flight_begins_where_the_orbit_is_and_ends_where_it_looks() {
+        let (mut app, camera) = app();
+        assert!(orbit(&app, camera).enabled);
+        let before = *app.world().get::<Transform>(camera).expect("a pose");
+        press(&mut app, KeyCode::KeyF);
+        assert!(
+            !orbit(&app, camera).enabled && app.world().get::<FreeCameraState>(camera).is_some_and(|it| it.enabled)
+        );
+        assert_eq!(app.world().get::<Transform>(camera), Some(&before));
+
+        let flown = Transform::from_xyz(40.0, 90.0, -30.0).looking_at(vec3(-20.0, 10.0, 60.0), Vec3::Y);
+        app.world_mut().entity_mut(camera).insert(flown);
+        press(&mut app, KeyCode::KeyF);
+        let pose = orbit(&app, camera).pose();
+        assert!(orbit(&app, camera).enabled && pose.translation.distance(flown.translation) < 0.1, "{pose:?}");
+        assert!(pose.forward().dot(*flown.forward()) > 0.9999, "{pose:?}");
+    }
+
+    #[test]
+    fn a_path_leads_while_the_flood_is_played_and_leaves_the_camera_there() {
+        let (mut app, camera) = app();
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/flood/path.ron");
+        app.insert_resource(CameraPath::read(&path).expect("the sample's path"));
+        let play = |app: &mut App, playing: bool| {
+            let world = app.world_mut();
+            world.query::<&mut Flood>().iter_mut(world).for_each(|mut flood| flood.playing = playing);
+            app.update();
+        };
+        play(&mut app, true);
+        let led = *app.world().get::<Transform>(camera).expect("a pose");
+        assert_eq!(led, app.world().resource::<CameraPath>().at(0.0));
+        assert!(!orbit(&app, camera).enabled);
+        play(&mut app, false);
+        assert!(orbit(&app, camera).enabled && orbit(&app, camera).pose().translation.distance(led.translation) < 0.1);
+    }
+}

@@ -9,8 +9,9 @@ use bevy_egui::{EguiContexts, egui};
 use bevy_freshet::{flood::Flood, panel::OrbitCamera};
 use freshet_flood::duration::clock;
 
-/// How a flight is steered.
-const FLIGHT: &str = "W A S D Q E: fly   shift: faster   right drag or M: look   wheel: speed   F: orbit";
+/// How the camera is moved.
+const ORBIT: &str = "drag: orbit   right drag: pan   wheel: zoom   F: fly";
+const FLIGHT: &str = "W A S D Q E: fly   right drag: look   wheel: speed   shift: faster   F: orbit";
 
 /// Draws it at the bottom of the window.
 pub fn draw(
@@ -42,8 +43,8 @@ pub fn draw(
                 steering.flies = flies;
             }
         });
-        let moves = if steering.flies { FLIGHT } else { "drag: orbit   right drag: pan   wheel: zoom   F: fly" };
-        ui.weak(format!("{moves}   click: depth over time\nspace: play   arrows: step   K: keyframe   F1: water"));
+        ui.weak(if steering.flies { FLIGHT } else { ORBIT });
+        ui.weak("click: depth over time   space: play   arrows: step   K: keyframe   F1: water");
     });
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! Pictures and films without a window. Each frame is that of its time in the data, so that it is the same whenever it is drawn.
+//! Draws pictures and films without a window. Each frame has the water of its time in the data, however long it takes to draw; its foam is what
+//! the frames before have left.
 use super::{Clip, Output};
 use crate::{
     cameras::CameraPath,
@@ -73,7 +74,9 @@ fn draw(app: &mut App, plan: &Plan) -> Result<(), String> {
             tell(number + 1, times.len(), start);
         }
     }
+    let begun = Instant::now();
     sink.finish()?;
+    written += begun.elapsed();
     if times.len() > 1 {
         let [seconds, share] = [start.elapsed(), written].map(|time| time.as_secs_f64());
         println!(

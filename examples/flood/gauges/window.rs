@@ -7,7 +7,7 @@ use bevy_egui::{
     egui::{self, Align2, Color32, FontId, LayerId, Order, Stroke, Ui, pos2, vec2 as size},
 };
 use bevy_freshet::{flood::Flood, panel::OrbitCamera};
-use egui_plot::{Legend, Line, Plot, PlotPoints, VLine, uniform_grid_spacer};
+use egui_plot::{Corner, HoverPosition, Legend, Line, Plot, PlotPoints, VLine, uniform_grid_spacer};
 use freshet_flood::duration::clock;
 
 /// Colours of gauges, one after the other: those of Okabe and Ito (2008), which the colour-blind tell apart, without black.
@@ -100,7 +100,7 @@ fn buttons(ui: &mut Ui, viewer: &Viewer, gauges: &mut Gauges) {
 fn lines(ui: &mut Ui, gauges: &[Gauge], flood: &Flood) {
     let (first, last) = flood.span();
     let plot = Plot::new("depths")
-        .legend(Legend::default().follow_insertion_order(true).background_alpha(0.6))
+        .legend(Legend::default().position(Corner::LeftTop).follow_insertion_order(true).background_alpha(0.6))
         .include_x(first)
         .include_x(last)
         .include_y(0.0)
@@ -111,8 +111,7 @@ fn lines(ui: &mut Ui, gauges: &[Gauge], flood: &Flood) {
             [0, 1, 2].map(|more| SPACES[(index + more).min(SPACES.len() - 1)])
         }))
         .label_formatter(|hover| {
-            let (egui_plot::HoverPosition::NearDataPoint { position, .. }
-            | egui_plot::HoverPosition::Elsewhere { position }) = hover;
+            let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = hover;
             Some(format!("{}\n{:.2} m", clock(position.x), position.y))
         });
     plot.min_size(size(120.0, 80.0)).show(ui, |plot| {
@@ -122,6 +121,6 @@ fn lines(ui: &mut Ui, gauges: &[Gauge], flood: &Flood) {
             plot.line(Line::new(name, PlotPoints::Borrowed(points)).color(color(index)).width(2.0));
         }
         // Without a name it is not in the legend.
-        plot.vline(VLine::new("", flood.usable_time()).color(Color32::GRAY).allow_hover(false));
+        plot.vline(VLine::new("", flood.usable_time()).color(Color32::WHITE).width(1.5).allow_hover(false));
     });
 }
