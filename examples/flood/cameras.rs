@@ -102,14 +102,15 @@ pub struct Recorded(Vec<Keyframe>);
 /// Records the camera with K.
 pub fn record(
     keys: Res<ButtonInput<KeyCode>>,
+    egui: Res<EguiWantsInput>,
     mut recorded: ResMut<Recorded>,
     flood: Single<&bevy_freshet::flood::Flood>,
     camera: Single<(&Transform, &OrbitCamera)>,
 ) {
-    if !keys.just_pressed(KeyCode::KeyK) {
+    if !keys.just_pressed(KeyCode::KeyK) || egui.wants_keyboard_input() {
         return;
     }
-    // Also where a path leads it, and the orbit is elsewhere.
+    // Also where a path leads it or it flies, and the orbit is elsewhere.
     let (pose, orbit) = *camera;
     let target = pose.translation + orbit.distance * pose.forward();
     let key = Keyframe { time: flood.usable_time(), eye: pose.translation, target };
@@ -133,7 +134,7 @@ pub fn pan(
     if !buttons.pressed(MouseButton::Right) || egui.wants_pointer_input() || motion.delta == Vec2::ZERO {
         return;
     }
-    for mut orbit in &mut orbits {
+    for mut orbit in orbits.iter_mut().filter(|orbit| orbit.enabled) {
         let along = Vec2::from_angle(orbit.azimuth);
         let way = 0.0015 * orbit.distance * motion.delta;
         let (right, towards) = (vec2(along.x, -along.y), vec2(along.y, along.x));

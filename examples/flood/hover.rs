@@ -1,6 +1,6 @@
 //! What is under the pointer.
 use crate::viewer::Viewer;
-use bevy::{prelude::*, window::PrimaryWindow};
+use bevy::{math::DVec2, prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContexts, egui, input::EguiWantsInput};
 use bevy_freshet::{flood::FloodState, panel::OrbitCamera};
 use freshet_flood::duration::clock;
@@ -44,10 +44,7 @@ pub fn tell(
     let Some(place) = ground(camera.0, camera.1, at, &viewer) else { return Ok(()) };
     let Some(cell) = viewer.terrain.cell_at(place.xz()) else { return Ok(()) };
     let Some(index) = viewer.terrain.index(cell) else { return Ok(()) };
-    let map = viewer.maps.georeference();
-    let from_north_west = place.xz() + 0.5 * viewer.terrain.extent();
-    let east = map.corner.x + f64::from(from_north_west.x);
-    let north = map.corner.y + f64::from(viewer.terrain.extent().y - from_north_west.y);
+    let DVec2 { x: east, y: north } = viewer.on_map(place.xz());
     let mut text = format!("E {east:.0}  N {north:.0}\nelevation {:.2} m", viewer.terrain.values()[index]);
     match state.moment().map(|moment| moment.cell(index)).filter(|water| water.y > 0.0) {
         Some(water) => {

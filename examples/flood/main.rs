@@ -2,19 +2,23 @@
 //!
 //! `flood [DIR]` plays a folder that `freshet-flood convert` made, without one the flood in `assets/flood/played`. `--out` draws
 //! a picture, `--film` a film. `--camera` chooses from `slope`, `top` and `plain`, or reads keyframes from a file that ends in
-//! `.ron`; K records such in a window.
+//! `.ron`; K records such in a window. A click on the ground, or `--mark`, shows the depth there over time; F flies.
 #[path = "../common/mod.rs"]
 mod common;
 
 mod cameras;
-mod headless;
+mod film;
+mod gauges;
 mod hover;
 mod land;
 mod overlay;
+mod steering;
 mod timeline;
 mod viewer;
 
-use bevy::{camera::Hdr, core_pipeline::tonemapping::Tonemapping, light::CascadeShadowConfigBuilder, prelude::*};
+use bevy::{
+    camera::Hdr, core_pipeline::tonemapping::Tonemapping, light::CascadeShadowConfigBuilder, math::DVec2, prelude::*,
+};
 use bevy_egui::{EguiPrimaryContextPass, PrimaryEguiContext};
 use bevy_freshet::{
     flood::FloodMaps,
@@ -24,7 +28,8 @@ use bevy_freshet::{
 use cameras::CameraPath;
 use clap::Parser;
 use common::{Canvas, Options};
-use headless::{Output, Plan};
+use film::{Output, Plan};
+use gauges::GaugesPlugin;
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
@@ -49,8 +54,11 @@ struct Arguments {
     /// Seconds of the flood in a second.
     #[arg(long, default_value_t = 60.0, value_parser = factor)]
     speed: f32,
-    /// Write a film: a PNG for each frame (film/%05d.png), or a GIF.
-    #[arg(long, value_parser = headless::film, conflicts_with = "out")]
+    /// Write a film: a video (film.mp4), an animated picture (film.gif), or a picture for each frame (film/%05d.png).
+    ///
+    /// Videos are AV1 in MP4, in BT.709 and at least 16 pixels wide and high, with a frame to go to every 2 s; players since about 2020
+    /// know AV1. A film that ends early, by an error or by Ctrl-C, leaves no file, but the pictures that are done.
+    #[arg(long, value_parser = Output::film, conflicts_with = "out")]
     film: Option<Output>,
     /// Frames in a second of the film.
     #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=100))]
@@ -61,6 +69,9 @@ struct Arguments {
     /// Time in the data at which the film ends.
     #[arg(long, value_parser = freshet_flood::duration::seconds)]
     to: Option<f64>,
+    /// Show the depth over time at a place of the map: easting and northing, E,N. For more places again.
+    #[arg(long, value_name = "E,N", value_parser = gauges::place, allow_hyphen_values = true)]
+    mark: Vec<DVec2>,
     #[command(flatten)]
     options: Options,
 }
@@ -78,6 +89,12 @@ fn main() -> AppExit {
     let maps = Arc::new(FloodMaps::open(folder).unwrap_or_else(|problem| common::fail(problem)));
     let viewer =
         Viewer::new(maps, arguments.color, arguments.exaggeration).unwrap_or_else(|problem| common::fail(problem));
+    let (first, last) = (viewer.maps.times()[0], viewer.maps.times()[viewer.maps.times().len() - 1]);
+    for (option, time) in [("--from", arguments.from), ("--to", arguments.to)] {
+        if let Some(time) = time.filter(|time| !(first..=last).contains(time)) {
+            common::fail(format!("{option}: expected a time of the flood, {first} s to {last} s, found {time} s"));
+        }
+    }
     if let (Some(from), Some(to)) = (arguments.from, arguments.to)
         && from > to
     {
@@ -95,8 +112,9 @@ fn main() -> AppExit {
     let mut options = arguments.options.clone();
     options.out = options.out.or(plan.as_ref().map(|_| PathBuf::new()));
     let mut app = common::app("bevy_freshet: flood", &options);
-    app.add_plugins((WaterPlugin, SkyPlugin, WaterPanelPlugin { visible: false, ..default() }))
-        .insert_resource(viewer)
+    let gauges = GaugesPlugin { places: arguments.mark.clone(), is_headless: plan.is_some() };
+    app.insert_resource(viewer)
+        .add_plugins((WaterPlugin, SkyPlugin, WaterPanelPlugin { visible: false, ..default() }, gauges))
         .insert_resource(arguments)
         .init_resource::<cameras::Recorded>()
         .add_systems(
@@ -113,9 +131,10 @@ fn main() -> AppExit {
         app.insert_resource(path);
     }
     if let Some(plan) = plan {
-        return headless::run(app, &plan);
+        return film::run(app, &plan);
     }
-    app.add_systems(Update, (timeline::keys, cameras::pan, cameras::record, follow_path))
+    app.add_plugins(steering::SteeringPlugin)
+        .add_systems(Update, (timeline::keys, cameras::pan, cameras::record))
         .add_systems(EguiPrimaryContextPass, (timeline::draw, hover::tell).after(overlay::draw));
     common::run(app)
 }
@@ -179,21 +198,6 @@ fn show_water(mut commands: Commands, viewer: Res<Viewer>, cameras: Query<(Entit
             Coloring::Water => {}
             _ if !without => _ = commands.entity(camera).insert((NoWater, Tonemapping::None)),
             _ => {}
-        }
-    }
-}
-
-/// In a window a path leads the camera while the flood is played.
-fn follow_path(
-    path: Option<Res<CameraPath>>,
-    flood: Single<&Flood>,
-    mut cameras: Query<(&mut Transform, &mut OrbitCamera)>,
-) {
-    let Some(path) = path else { return };
-    for (mut pose, mut orbit) in &mut cameras {
-        orbit.enabled = !flood.playing;
-        if flood.playing {
-            *pose = path.at(flood.usable_time());
         }
     }
 }

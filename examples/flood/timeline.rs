@@ -1,6 +1,7 @@
 //! The timeline: play, step, loop, speed and scrub; colouring, cameras and exaggeration.
 use crate::{
     cameras,
+    steering::Steering,
     viewer::{Coloring, Viewer},
 };
 use bevy::prelude::*;
@@ -8,13 +9,19 @@ use bevy_egui::{EguiContexts, egui};
 use bevy_freshet::{flood::Flood, panel::OrbitCamera};
 use freshet_flood::duration::clock;
 
+/// How the camera is moved.
+const ORBIT: &str = "drag: orbit   right drag: pan   wheel: zoom   F: fly";
+const FLIGHT: &str = "W A S D Q E: fly   right drag: look   wheel: speed   shift: faster   F: orbit";
+
 /// Draws it at the bottom of the window.
 pub fn draw(
     mut contexts: EguiContexts,
     mut viewer: ResMut<Viewer>,
     mut flood: Single<&mut Flood>,
-    mut orbit: Single<&mut OrbitCamera>,
+    mut steering: ResMut<Steering>,
+    camera: Single<(&mut OrbitCamera, &mut Transform)>,
 ) -> Result {
+    let (mut orbit, mut pose) = camera.into_inner();
     let context = contexts.ctx_mut()?;
     let anchor = egui::Align2::CENTER_BOTTOM;
     egui::Window::new("Flood").title_bar(false).resizable(false).anchor(anchor, [0.0, -8.0]).show(context, |ui| {
@@ -26,11 +33,18 @@ pub fn draw(
                 if ui.button(name).clicked()
                     && let Ok(wanted) = cameras::orbit(Some(name), &viewer)
                 {
-                    **orbit = wanted;
+                    *pose = wanted.pose();
+                    *orbit = wanted;
+                    steering.flies = false;
                 }
             }
+            let mut flies = steering.flies;
+            if ui.toggle_value(&mut flies, "fly").on_hover_text(FLIGHT).changed() {
+                steering.flies = flies;
+            }
         });
-        ui.weak("drag: orbit   right drag: pan   wheel: zoom   space: play   arrows: step   K: keyframe   F1: water");
+        ui.weak(if steering.flies { FLIGHT } else { ORBIT });
+        ui.weak("click: depth over time   space: play   arrows: step   K: keyframe   F1: water");
     });
     Ok(())
 }

@@ -1,5 +1,8 @@
 //! What is looked at: the flood, its colouring, and the scales of these.
-use bevy::prelude::*;
+use bevy::{
+    math::{DVec2, dvec2},
+    prelude::*,
+};
 use bevy_freshet::{flood::FloodMaps, surface::ViewScale};
 use freshet_flood::{maps::MapsError, maxima::hazard_rating, step::Quantity};
 use freshet_hydro::grid::Grid;
@@ -107,6 +110,41 @@ impl Viewer {
             }
         };
         Some(ViewScale::color((value - scale.low) / (scale.high - scale.low).max(f32::MIN_POSITIVE)))
+    }
+
+    /// Easting and northing of a place of the world (x, z).
+    pub fn on_map(&self, place: Vec2) -> DVec2 {
+        let map = self.maps.georeference();
+        let middle = map.corner + 0.5 * map.cell_size * map.size.as_dvec2();
+        middle + dvec2(place.x.into(), -f64::from(place.y))
+    }
+
+    /// The place of the world (x, z) with this easting and northing.
+    pub fn in_world(&self, place: DVec2) -> Vec2 {
+        let map = self.maps.georeference();
+        let middle = map.corner + 0.5 * map.cell_size * map.size.as_dvec2();
+        let from_middle = (place - middle).as_vec2();
+        vec2(from_middle.x, -from_middle.y)
+    }
+
+    /// The cell with this easting and northing.
+    ///
+    /// # Errors
+    /// Where the flood is, if it is not there.
+    pub fn cell_on_map(&self, place: DVec2) -> Result<usize, String> {
+        let map = self.maps.georeference();
+        let cell = ((place - map.corner) / map.cell_size).floor();
+        let is_inside = cell.cmpge(DVec2::ZERO).all() && cell.cmplt(map.size.as_dvec2()).all();
+        if is_inside {
+            // Rows begin in the north.
+            let (column, row) = (cell.x as usize, map.size.y as usize - 1 - cell.y as usize);
+            return Ok(row * map.size.x as usize + column);
+        }
+        let end = map.corner + map.cell_size * map.size.as_dvec2();
+        Err(format!(
+            "expected a place in the flood, E {} to {} and N {} to {}, found E {} N {}",
+            map.corner.x, end.x, map.corner.y, end.y, place.x, place.y
+        ))
     }
 
     /// When the water first reaches a cell, s in the data.
