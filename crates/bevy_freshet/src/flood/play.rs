@@ -19,6 +19,8 @@ pub struct FloodState {
     shown: Option<Shown>,
     /// The part that is shown next, if it is there.
     next: Option<Arc<PlayedInterval>>,
+    /// The water of every cell, as the GPU draws it.
+    picture: Option<Handle<Image>>,
     /// Whether its time is not there yet.
     is_late: bool,
 }
@@ -113,6 +115,13 @@ impl FloodState {
         self.shown.as_ref().map(|shown| &shown.moment)
     }
 
+    /// The same on the GPU, for materials of one's own: level (m), depth (m) and velocity to the east and the south (m/s) of every cell, as
+    /// [`TextureFormat::Rgba32Float`](bevy::render::render_resource::TextureFormat::Rgba32Float), drawn anew before the cameras
+    /// whenever the water changes. The velocity is undefined where the depth is 0. `None` until it is there, or if nothing is drawn.
+    pub fn picture(&self) -> Option<&Handle<Image>> {
+        self.picture.as_ref()
+    }
+
     /// Whether the water of the flood's time is not there yet.
     pub fn is_late(&self) -> bool {
         self.is_late
@@ -190,16 +199,20 @@ fn draw(
     mut commands: Commands,
     mut images: ResMut<Assets<Image>>,
     mut reported: ResMut<Reported>,
-    mut floods: Query<(Entity, &Flood, &FloodState, &mut Simulated), Played>,
+    mut floods: Query<(Entity, &Flood, &mut FloodState, &mut Simulated), Played>,
 ) {
-    for (entity, flood, playback, mut simulated) in &mut floods {
+    for (entity, flood, mut playback, mut simulated) in &mut floods {
         let size = flood.maps().map_or(UVec2::ZERO, |maps| maps.georeference().size);
         if size.max_element() > MOST_CELLS {
             reported.warn(entity, "Flood", format_args!("has {size} cells, more than {MOST_CELLS}; it is not drawn"));
             continue;
         }
         match simulated.played_frame(playback.next.clone(), &mut images) {
-            Some(frame) => _ = commands.entity(entity).try_insert(frame),
+            Some(frame) => {
+                let is_there = playback.shown.is_some();
+                playback.picture = simulated.pictures.as_ref().filter(|_| is_there).map(|[picture, _]| picture.clone());
+                commands.entity(entity).try_insert(frame);
+            }
             None => _ = commands.entity(entity).try_remove::<ShallowFrame>(),
         }
     }
