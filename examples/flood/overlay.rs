@@ -105,14 +105,14 @@ fn north(painter: &Painter, pose: &GlobalTransform, middle: Pos2) {
     let along = vec2(-right.y, -right.x);
     let flat = size(along.x, along.y);
     let side = size(-flat.y, flat.x);
-    let tip = middle + 18.0 * flat;
-    let tail = middle - 12.0 * flat;
+    let tip = middle + 9.0 * flat;
+    let tail = middle - 18.0 * flat;
     painter.circle_filled(middle, 24.0, SHADE);
     let notch = tail + 4.0 * flat;
     for (wing, color) in [(tail + 8.0 * side, INK), (tail - 8.0 * side, Color32::GRAY)] {
         painter.add(Shape::convex_polygon(vec![tip, wing, notch], color, Stroke::NONE));
     }
-    painter.text(middle - 15.0 * flat, Align2::CENTER_CENTER, "N", FontId::proportional(12.0), INK);
+    painter.text(middle + 16.0 * flat, Align2::CENTER_CENTER, "N", FontId::proportional(12.0), INK);
 }
 
 /// A bar of a round length, as it is in the middle of the picture.
