@@ -7,12 +7,18 @@
 mod common;
 
 mod cameras;
+mod drape;
 mod headless;
 mod hover;
 mod land;
 mod overlay;
+mod paint;
+mod relief;
+mod terrain;
+mod texture;
 mod timeline;
 mod viewer;
+mod world_file;
 
 use bevy::{camera::Hdr, core_pipeline::tonemapping::Tonemapping, light::CascadeShadowConfigBuilder, prelude::*};
 use bevy_egui::{EguiPrimaryContextPass, PrimaryEguiContext};
@@ -46,6 +52,12 @@ struct Arguments {
     /// Factor on all heights.
     #[arg(long, default_value_t = 2.0, value_parser = factor)]
     exaggeration: f32,
+    /// Image of the ground, a PNG or JPEG: over all of it, or where its world file (.pgw, .jgw, .wld) says.
+    #[arg(long)]
+    image: Option<PathBuf>,
+    /// Most pixels by which the drawn ground may be off; 0 draws every cell.
+    #[arg(long, default_value_t = 1.0, value_parser = pixels)]
+    tolerance: f32,
     /// Seconds of the flood in a second.
     #[arg(long, default_value_t = 60.0, value_parser = factor)]
     speed: f32,
@@ -69,6 +81,12 @@ struct Arguments {
 fn factor(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|number| (0.01..=1e4).contains(number));
     number.ok_or_else(|| format!("expected a number from 0.01 to 10000, found {text:?}"))
+}
+
+/// A number from 0 to 1000.
+fn pixels(text: &str) -> Result<f32, String> {
+    let number = text.parse::<f32>().ok().filter(|number| (0.0..=1e3).contains(number));
+    number.ok_or_else(|| format!("expected a number from 0 to 1000, found {text:?}"))
 }
 
 fn main() -> AppExit {
@@ -106,8 +124,14 @@ fn main() -> AppExit {
             })
                 .chain(),
         )
-        .add_systems(Update, (land::exaggerate, land::dress, show_water))
-        .add_systems(PostUpdate, land::paint.after(WaterSystems::Resolve))
+        .add_systems(Update, (land::exaggerate, relief::follow, show_water))
+        .add_systems(
+            PostUpdate,
+            (
+                paint::paint.after(WaterSystems::Resolve),
+                (land::dress, terrain::show).chain().before(TransformSystems::Propagate),
+            ),
+        )
         .add_systems(EguiPrimaryContextPass, overlay::draw);
     if let Some(path) = path {
         app.insert_resource(path);

@@ -43,7 +43,7 @@ pub const HAZARDS: [(f32, &str); 4] = [(0.0, "caution"), (0.75, "for some"), (1.
 pub struct Viewer {
     pub maps: Arc<FloodMaps>,
     /// Elevations, with gaps filled.
-    pub terrain: Grid<f32>,
+    pub terrain: Arc<Grid<f32>>,
     /// Seconds from the first step to the first wetting.
     pub arrival: Option<Grid<f32>>,
     pub coloring: Coloring,
@@ -70,7 +70,7 @@ impl Viewer {
         Ok(Self {
             most: [most(Quantity::Depth), most(Quantity::Speed)],
             maps,
-            terrain,
+            terrain: Arc::new(terrain),
             arrival,
             coloring,
             exaggeration,
@@ -124,9 +124,9 @@ pub fn hazard_color(class: usize) -> LinearRgba {
 
 /// The value below which `share` of all are; 0 of none.
 pub fn percentile(mut values: Vec<f32>, share: f32) -> f32 {
-    values.sort_by(f32::total_cmp);
-    let index = (values.len().saturating_sub(1)) as f32 * share;
-    values.get(index as usize).copied().unwrap_or_default()
+    let index = (values.len().saturating_sub(1)) as f64 * f64::from(share);
+    // One value in its place is had in a tenth of the time of all.
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(index as usize, f32::total_cmp).1 }
 }
 
 /// The next round number: one digit that divides well, or 15, times a power of ten.
