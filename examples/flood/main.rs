@@ -56,7 +56,7 @@ struct Arguments {
     #[arg(long)]
     image: Option<PathBuf>,
     /// Most pixels by which the drawn ground may be off; 0 draws every cell.
-    #[arg(long, default_value_t = 1.0, value_parser = pixels)]
+    #[arg(long, default_value_t = 0.5, value_parser = pixels)]
     tolerance: f32,
     /// Seconds of the flood in a second.
     #[arg(long, default_value_t = 60.0, value_parser = factor)]

@@ -5,7 +5,7 @@ mod streaming;
 mod tree;
 mod walls;
 
-use bevy::prelude::*;
+use bevy::{camera::primitives::Frustum, math::primitives::ViewFrustum, prelude::*};
 use bevy_freshet::{flood::Flood, panel::OrbitCamera};
 use selection::Eye;
 
@@ -35,6 +35,14 @@ pub fn show(
         place: pose.translation,
         pixels: 0.5 * height * camera.clip_from_view().y_axis.y,
         exaggeration: block.scale.y,
+        frustum: Some(frustum(camera.clip_from_view(), pose)),
     };
     ground.show(&eye, flood.waits, &mut Workshop { commands: &mut commands, meshes: &mut meshes });
+}
+
+/// What a camera sees from where it is in this frame; the component is that of the last one.
+fn frustum(clip_from_view: Mat4, pose: &Transform) -> Frustum {
+    let clip_from_world = clip_from_view * pose.to_matrix().inverse();
+    let back = pose.back().as_vec3();
+    Frustum(ViewFrustum::from_clip_from_world_custom_far(&clip_from_world, &pose.translation, &back, 1e9))
 }

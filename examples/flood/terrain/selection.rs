@@ -1,31 +1,44 @@
 //! Which tiles are drawn from a place: as few as keep the error on the screen below a number of pixels.
 use super::tree::{Tile, Tree};
-use bevy::{platform::collections::HashSet, prelude::*};
+use bevy::{
+    camera::primitives::{Aabb, Frustum},
+    platform::collections::HashSet,
+    prelude::*,
+};
 use std::{cmp::Ordering, collections::BinaryHeap};
 
 /// Share of the tolerance below which a tile that was split is whole again, so that a camera that trembles changes nothing.
 const CALM: f32 = 0.7;
 
+/// How much less an error counts beside the picture: there tiles only cast shadows, and wait for a turn of the camera.
+const BESIDE: f32 = 0.25;
+
 /// From where the terrain is seen.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Eye {
     /// Place in the frame of the terrain, heights exaggerated.
     pub place: Vec3,
     /// Pixels of a length of 1 m at a distance of 1 m.
     pub pixels: f32,
     pub exaggeration: f32,
+    /// What of it is in the picture; all, if nothing is told.
+    pub frustum: Option<Frustum>,
 }
 
 impl Eye {
-    /// The error of a tile on the screen, pixels: e h / (2 r tan(φ/2)) for its error e in the nearest distance r.
+    /// The error of a tile on the screen, pixels: e h / (2 r tan(φ/2)) for its error e in the nearest distance r, and less
+    /// of it beside the picture.
     pub fn error(&self, tree: &Tree, tile: Tile) -> f32 {
         let bounds = tree.bounds(tile);
         let ([low, high], heights) = (tree.area(tile), bounds.heights * self.exaggeration);
-        let nearest = self.place.clamp(vec3(low.x, heights.x, low.y), vec3(high.x, heights.y, high.y));
+        let [low, high] = [vec3(low.x, heights.x, low.y), vec3(high.x, heights.y, high.y)];
         if bounds.error == 0.0 {
             return 0.0;
         }
-        bounds.error * self.exaggeration * self.pixels / self.place.distance(nearest)
+        let is_seen = |frustum: &Frustum| frustum.intersects_obb_identity(&Aabb::from_min_max(low, high));
+        let weight = if self.frustum.as_ref().is_none_or(is_seen) { 1.0 } else { BESIDE };
+        let nearest = self.place.clamp(low, high);
+        weight * bounds.error * self.exaggeration * self.pixels / self.place.distance(nearest)
     }
 }
 
@@ -96,7 +109,7 @@ mod tests {
     use crate::terrain::tree::tests::tree;
 
     fn eye(place: Vec3) -> Eye {
-        Eye { place, pixels: 650.0, exaggeration: 2.0 }
+        Eye { place, pixels: 650.0, exaggeration: 2.0, frustum: None }
     }
 
     /// Eyes above, beside and in the terrain.
@@ -125,6 +138,20 @@ mod tests {
         assert!(chosen.leaves.contains(&Tile { level: 0, at: UVec2::ZERO }));
         let far = select(&tree, &Eye { place: vec3(0.0, 1e5, 0.0), ..eye }, 1.5, 1000, &HashSet::default());
         assert_eq!(far.leaves, HashSet::from_iter([tree.root()]));
+    }
+
+    #[test]
+    fn what_is_not_in_the_picture_is_coarser() {
+        let tree = tree(uvec2(700, 430));
+        let pose = Transform::from_xyz(0.0, 20.0, 0.0).looking_to(Vec3::X, Vec3::Y);
+        let clip_from_view = Mat4::perspective_infinite_reverse_rh(0.8, 1.8, 0.1);
+        let all = eye(pose.translation);
+        let ahead = Eye { frustum: Some(super::super::frustum(clip_from_view, &pose)), ..all };
+        let [all, ahead] = [all, ahead].map(|eye| select(&tree, &eye, 60.0, 1000, &HashSet::default()).leaves);
+        assert!(ahead.len() < all.len());
+        let is_seen = |tile: &&Tile| tree.area(**tile)[0].x > 0.0 && tree.area(**tile)[0].y.abs() < 1.0;
+        let seen = |tiles: &HashSet<Tile>| tiles.iter().filter(is_seen).copied().collect::<HashSet<_>>();
+        assert_eq!(seen(&ahead), seen(&all));
     }
 
     #[test]

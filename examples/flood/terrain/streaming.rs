@@ -16,7 +16,7 @@ const MOST_DRAWN: usize = 1024;
 /// Most tiles that are kept, if no more are wanted.
 const MOST_KEPT: usize = 1536;
 /// Tiles that are built at once: few, so that what is wanted by then comes next.
-const AT_ONCE: usize = 12;
+const AT_ONCE: usize = 32;
 
 /// The drawn terrain.
 #[derive(Resource)]

@@ -5,6 +5,9 @@ use freshet_hydro::levels::Levels;
 /// Quads along a side of a tile.
 pub const TILE: u32 = 64;
 
+/// How much more an error counts that cells usually have: where the ground slopes by s, it moves a shore by 1 / s times as much.
+const SHORE: f32 = 30.0;
+
 /// A tile: all tiles have as many quads, those of level l with sides of 2^l cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Tile {
@@ -23,8 +26,10 @@ impl Tile {
 /// What is known of a tile before it is built.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
-    /// How far the ground rises above it at most, m; no less than for any tile of its area.
+    /// How far it is off the ground, m: at most, or [`SHORE`] times that of usual cells; no less than for any tile of its area.
     pub error: f32,
+    /// How far it is off the ground at most, likewise, m.
+    pub most: f32,
     /// Lowest and highest place, m.
     pub heights: Vec2,
 }
@@ -98,16 +103,23 @@ impl Tree {
     /// The bounds of a tile whose children's are known.
     fn measured(&self, tile: Tile) -> Bounds {
         let [first, last] = self.vertices(tile);
-        let below = self.children(tile).map(|child| self.bounds(child).error).fold(0.0, f32::max);
-        let mut bounds = Bounds { error: below, heights: vec2(f32::MAX, f32::MIN) };
-        for vertex in (first.y..=last.y).flat_map(|y| (first.x..=last.x).map(move |x| uvec2(x, y))) {
-            let height = self.levels.height(tile.level, vertex);
-            bounds.heights = vec2(bounds.heights.x.min(height), bounds.heights.y.max(height));
-            if tile.level > 0 && vertex.cmplt(last).all() {
-                bounds.error = bounds.error.max(self.levels.error(tile.level, vertex));
-            }
+        let places = |last: UVec2| (first.y..=last.y).flat_map(move |y| (first.x..=last.x).map(move |x| uvec2(x, y)));
+        let (mut most, mut usual, mut heights) = (0.0_f32, 0.0_f32, vec2(f32::MAX, f32::MIN));
+        for quad in places(last - 1) {
+            let misses = self.levels.misses(tile.level, quad);
+            most = most.max(misses.most);
+            usual += misses.usual;
         }
-        bounds
+        for vertex in places(last) {
+            let height = self.levels.height(tile.level, vertex);
+            heights = vec2(heights.x.min(height), heights.y.max(height));
+        }
+        let error = most.max(SHORE * usual / (last - first).element_product() as f32);
+        self.children(tile).map(|child| self.bounds(child)).fold(Bounds { error, most, heights }, |all, child| Bounds {
+            error: all.error.max(child.error),
+            most: all.most.max(child.most),
+            ..all
+        })
     }
 }
 
@@ -138,7 +150,8 @@ pub mod tests {
                 let mut sum = 0.0;
                 for child in tree.children(tile) {
                     assert!(tree.area(child)[0].cmpge(low).all() && tree.area(child)[1].cmple(high).all());
-                    assert!(tree.bounds(child).error <= tree.bounds(tile).error, "{tile:?}, {child:?}");
+                    let [above, below] = [tile, child].map(|tile| tree.bounds(tile));
+                    assert!(below.error <= above.error && below.most <= above.most, "{tile:?}, {child:?}");
                     sum += area(child).element_product();
                 }
                 assert!((sum - area(tile).element_product()).abs() < 1e-3 * sum, "{size}, {tile:?}: {sum}");
