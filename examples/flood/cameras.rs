@@ -1,6 +1,7 @@
 //! Where the flood is seen from: a few places by name, or a path through keyframes.
 use crate::viewer::Viewer;
 use bevy::{
+    camera::CameraProjection,
     input::mouse::AccumulatedMouseMotion,
     math::cubic_splines::{CubicCardinalSpline, CubicCurve, CubicGenerator},
     prelude::*,
@@ -8,7 +9,7 @@ use bevy::{
 use bevy_egui::input::EguiWantsInput;
 use bevy_freshet::panel::OrbitCamera;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::{f32::consts::FRAC_PI_2, path::Path};
 
 /// Names of the cameras.
 pub const NAMES: [&str; 3] = ["slope", "top", "plain"];
@@ -20,10 +21,16 @@ pub const NAMES: [&str; 3] = ["slope", "top", "plain"];
 pub fn orbit(name: Option<&str>, viewer: &Viewer) -> Result<OrbitCamera, String> {
     let extent = viewer.terrain.extent();
     let height = |place: Vec2| viewer.terrain.sample(place) * viewer.exaggeration;
-    let usual = OrbitCamera { target: Vec3::Y * height(Vec2::ZERO), distance: 1.15 * extent.y, ..default() };
+    let usual = OrbitCamera { target: Vec3::Y * height(Vec2::ZERO), distance: extent.max_element(), ..default() };
     match name.unwrap_or(NAMES[0]) {
-        "slope" => Ok(OrbitCamera { elevation: 0.65, azimuth: 0.45, ..usual }),
-        "top" => Ok(OrbitCamera { elevation: 1.55, azimuth: 0.0, distance: 1.25 * extent.y, ..usual }),
+        "slope" => {
+            // The longer side lies across the picture, seen with the sun, and so much from above as fills its height.
+            let azimuth = if extent.y > extent.x { 0.18 - FRAC_PI_2 } else { 0.18 };
+            let flatness = extent.max_element() / extent.min_element() * SHAPE.recip();
+            let elevation = flatness.clamp(0.55, 0.75).asin();
+            Ok(framed(OrbitCamera { elevation, azimuth, ..usual }, viewer, 1.05))
+        }
+        "top" => Ok(framed(OrbitCamera { elevation: 1.55, azimuth: 0.0, ..usual }, viewer, 0.97)),
         "plain" => {
             let place = vec2(0.15 * extent.x, -0.05 * extent.y);
             let target = vec3(place.x, height(place), place.y);
@@ -33,6 +40,30 @@ pub fn orbit(name: Option<&str>, viewer: &Viewer) -> Result<OrbitCamera, String>
             Err(format!("there is no camera {other:?}; there are {}, or a file that ends in .ron", NAMES.join(", ")))
         }
     }
+}
+
+/// Width of a usual picture over its height.
+const SHAPE: f32 = 16.0 / 9.0;
+
+/// The orbit from which the corners of the terrain reach to `share` of a usual picture.
+fn framed(mut orbit: OrbitCamera, viewer: &Viewer, share: f32) -> OrbitCamera {
+    let half = 0.5 * viewer.terrain.extent();
+    let corners = [vec2(-1.0, -1.0), vec2(1.0, -1.0), vec2(-1.0, 1.0), vec2(1.0, 1.0)].map(|side| side * half);
+    let corners = corners.map(|at| vec3(at.x, viewer.terrain.sample(at) * viewer.exaggeration, at.y));
+    let projection = PerspectiveProjection { aspect_ratio: SHAPE, ..default() }.get_clip_from_view();
+    // Each round halves what is missing, or better.
+    for _ in 0..40 {
+        let pose = orbit.pose();
+        let clip_from_world = projection * pose.to_matrix().inverse();
+        let seen = corners.map(|corner| clip_from_world.project_point3(corner).xy());
+        let (low, high) = seen.into_iter().fold((Vec2::MAX, Vec2::MIN), |(low, high), at| (low.min(at), high.max(at)));
+        let (middle, reach) = (0.5 * (low + high), 0.5 * (high - low));
+        let width = orbit.distance / projection.y_axis.y;
+        let ahead = pose.forward().with_y(0.0).normalize_or(Vec3::NEG_Z);
+        orbit.target += 0.7 * width * (middle.x * SHAPE * pose.right() + middle.y * ahead);
+        orbit.distance *= (reach.max_element() / share).clamp(0.5, 2.0);
+    }
+    orbit
 }
 
 /// A place of the camera at a time of the flood.

@@ -7,14 +7,20 @@
 mod common;
 
 mod cameras;
+mod drape;
 mod film;
 mod gauges;
 mod hover;
 mod land;
 mod overlay;
+mod paint;
+mod relief;
 mod steering;
+mod terrain;
+mod texture;
 mod timeline;
 mod viewer;
+mod world_file;
 
 use bevy::{
     camera::Hdr, core_pipeline::tonemapping::Tonemapping, light::CascadeShadowConfigBuilder, math::DVec2, prelude::*,
@@ -30,6 +36,7 @@ use clap::Parser;
 use common::{Canvas, Options};
 use film::{Output, Plan};
 use gauges::GaugesPlugin;
+use paint::PaintPlugin;
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
@@ -51,6 +58,12 @@ struct Arguments {
     /// Factor on all heights.
     #[arg(long, default_value_t = 2.0, value_parser = factor)]
     exaggeration: f32,
+    /// Image of the ground, a PNG or JPEG: over all of it, or where its world file (.pgw, .jgw, .wld) says.
+    #[arg(long)]
+    image: Option<PathBuf>,
+    /// Most pixels by which the drawn ground may be off; 0 draws every cell.
+    #[arg(long, default_value_t = 0.5, value_parser = pixels)]
+    tolerance: f32,
     /// Seconds of the flood in a second.
     #[arg(long, default_value_t = 60.0, value_parser = factor)]
     speed: f32,
@@ -80,6 +93,12 @@ struct Arguments {
 fn factor(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|number| (0.01..=1e4).contains(number));
     number.ok_or_else(|| format!("expected a number from 0.01 to 10000, found {text:?}"))
+}
+
+/// A number from 0 to 1000.
+fn pixels(text: &str) -> Result<f32, String> {
+    let number = text.parse::<f32>().ok().filter(|number| (0.0..=1e3).contains(number));
+    number.ok_or_else(|| format!("expected a number from 0 to 1000, found {text:?}"))
 }
 
 fn main() -> AppExit {
@@ -114,7 +133,7 @@ fn main() -> AppExit {
     let mut app = common::app("bevy_freshet: flood", &options);
     let gauges = GaugesPlugin { places: arguments.mark.clone(), is_headless: plan.is_some() };
     app.insert_resource(viewer)
-        .add_plugins((WaterPlugin, SkyPlugin, WaterPanelPlugin { visible: false, ..default() }, gauges))
+        .add_plugins((WaterPlugin, SkyPlugin, WaterPanelPlugin { visible: false, ..default() }, gauges, PaintPlugin))
         .insert_resource(arguments)
         .init_resource::<cameras::Recorded>()
         .add_systems(
@@ -124,8 +143,8 @@ fn main() -> AppExit {
             })
                 .chain(),
         )
-        .add_systems(Update, (land::exaggerate, land::dress, show_water))
-        .add_systems(PostUpdate, land::paint.after(WaterSystems::Resolve))
+        .add_systems(Update, (land::exaggerate, land::dress, relief::follow, show_water))
+        .add_systems(PostUpdate, terrain::show.before(TransformSystems::Propagate))
         .add_systems(EguiPrimaryContextPass, overlay::draw);
     if let Some(path) = path {
         app.insert_resource(path);

@@ -4,7 +4,7 @@ use bevy::{
     prelude::*,
 };
 use bevy_freshet::{flood::FloodMaps, surface::ViewScale};
-use freshet_flood::{maps::MapsError, maxima::hazard_rating, step::Quantity};
+use freshet_flood::{maps::MapsError, step::Quantity};
 use freshet_hydro::grid::Grid;
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ pub const HAZARDS: [(f32, &str); 4] = [(0.0, "caution"), (0.75, "for some"), (1.
 pub struct Viewer {
     pub maps: Arc<FloodMaps>,
     /// Elevations, with gaps filled.
-    pub terrain: Grid<f32>,
+    pub terrain: Arc<Grid<f32>>,
     /// Seconds from the first step to the first wetting.
     pub arrival: Option<Grid<f32>>,
     pub coloring: Coloring,
@@ -73,7 +73,7 @@ impl Viewer {
         Ok(Self {
             most: [most(Quantity::Depth), most(Quantity::Speed)],
             maps,
-            terrain,
+            terrain: Arc::new(terrain),
             arrival,
             coloring,
             exaggeration,
@@ -93,23 +93,6 @@ impl Viewer {
             Coloring::Hazard => (0.0, HAZARDS.len() as f32, ""),
         };
         Some(ViewScale { low, high, unit })
-    }
-
-    /// The colour of wet cell `index` with this depth (m) and speed (m/s).
-    pub fn color(&self, index: usize, depth: f32, speed: f32) -> Option<LinearRgba> {
-        let scale = self.scale()?;
-        let value = match self.coloring {
-            Coloring::Water => return None,
-            Coloring::Depth => depth,
-            Coloring::Speed => speed,
-            Coloring::Arrival => ((self.arrival_of(index)?) / 60.0) as f32,
-            Coloring::Hazard => {
-                let rating = hazard_rating(depth, speed);
-                let class = HAZARDS.iter().filter(|(from, _)| *from <= rating).count().saturating_sub(1);
-                return Some(hazard_color(class));
-            }
-        };
-        Some(ViewScale::color((value - scale.low) / (scale.high - scale.low).max(f32::MIN_POSITIVE)))
     }
 
     /// Easting and northing of a place of the world (x, z).
@@ -162,9 +145,9 @@ pub fn hazard_color(class: usize) -> LinearRgba {
 
 /// The value below which `share` of all are; 0 of none.
 pub fn percentile(mut values: Vec<f32>, share: f32) -> f32 {
-    values.sort_by(f32::total_cmp);
-    let index = (values.len().saturating_sub(1)) as f32 * share;
-    values.get(index as usize).copied().unwrap_or_default()
+    let index = (values.len().saturating_sub(1)) as f64 * f64::from(share);
+    // One value in its place is had in a tenth of the time of all.
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(index as usize, f32::total_cmp).1 }
 }
 
 /// The next round number: one digit that divides well, or 15, times a power of ten.

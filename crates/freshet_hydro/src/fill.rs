@@ -8,6 +8,9 @@ use glam::{UVec2, uvec2};
 /// missing; each gap then takes the value of the finest grid that has one, interpolated. A grid without any value comes
 /// back with `lowest` everywhere.
 pub fn fill_missing(grid: &Grid<f32>, lowest: f32) -> Grid<f32> {
+    if !grid.values().iter().any(|z| z.is_nan()) {
+        return grid.clone();
+    }
     let Some(coarse) = coarsened(grid) else {
         return grid.map(|z| if z.is_nan() { lowest } else { *z });
     };

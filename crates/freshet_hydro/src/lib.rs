@@ -10,6 +10,7 @@ pub mod grid;
 pub mod hull;
 pub mod ice;
 mod lanes;
+pub mod levels;
 pub mod load;
 pub mod noise;
 pub mod optics;

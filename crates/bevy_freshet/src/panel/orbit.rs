@@ -16,7 +16,7 @@ pub struct OrbitCamera {
     pub enabled: bool,
     /// The place in the middle of the picture, world, m. Default the origin.
     pub target: Vec3,
-    /// Distance of the eye from it, m, 0.5…5000. Default 20.
+    /// Distance of the eye from it, m, 0.5…100 000. Default 20.
     pub distance: f32,
     /// Angle of the eye above the horizon of the target, rad, −1.55…1.55. Default 0.4.
     pub elevation: f32,
@@ -60,7 +60,7 @@ impl OrbitCamera {
             |value: f32, low: f32, high: f32, else_: f32| if value.is_nan() { else_ } else { value.clamp(low, high) };
         Self {
             target: if self.target.is_finite() { self.target } else { usual.target },
-            distance: number(self.distance, 0.5, 5000.0, usual.distance),
+            distance: number(self.distance, 0.5, 1e5, usual.distance),
             // Straight up and down have no bearing.
             elevation: number(self.elevation, -FRAC_PI_2 + 0.02, FRAC_PI_2 - 0.02, usual.elevation),
             azimuth: if self.azimuth.is_finite() { self.azimuth % TAU } else { usual.azimuth },
