@@ -17,6 +17,8 @@ mod paint;
 mod relief;
 mod steering;
 mod terrain;
+#[cfg(test)]
+mod tests;
 mod texture;
 mod timeline;
 mod viewer;
@@ -61,7 +63,7 @@ struct Arguments {
     /// Image of the ground, a PNG or JPEG: over all of it, or where its world file (.pgw, .jgw, .wld) says.
     #[arg(long)]
     image: Option<PathBuf>,
-    /// Most pixels by which the drawn ground may be off; 0 draws every cell.
+    /// Most pixels by which the drawn ground may be off, as far as eight million triangles go; at 0 they are all spent.
     #[arg(long, default_value_t = 0.5, value_parser = pixels)]
     tolerance: f32,
     /// Seconds of the flood in a second.
@@ -102,7 +104,18 @@ fn pixels(text: &str) -> Result<f32, String> {
 }
 
 fn main() -> AppExit {
-    let arguments = Arguments::parse();
+    let (mut app, plan) = viewer_of(Arguments::parse());
+    if let Some(plan) = plan {
+        return film::run(app, &plan);
+    }
+    app.add_plugins(steering::SteeringPlugin)
+        .add_systems(Update, (timeline::keys, cameras::pan, cameras::record))
+        .add_systems(EguiPrimaryContextPass, (timeline::draw, hover::tell).after(overlay::draw));
+    common::run(app)
+}
+
+/// The viewer, and what is to be drawn if it is without a window.
+fn viewer_of(arguments: Arguments) -> (App, Option<Plan>) {
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/flood/played");
     let folder = arguments.folder.clone().unwrap_or(sample);
     let maps = Arc::new(FloodMaps::open(folder).unwrap_or_else(|problem| common::fail(problem)));
@@ -149,13 +162,7 @@ fn main() -> AppExit {
     if let Some(path) = path {
         app.insert_resource(path);
     }
-    if let Some(plan) = plan {
-        return film::run(app, &plan);
-    }
-    app.add_plugins(steering::SteeringPlugin)
-        .add_systems(Update, (timeline::keys, cameras::pan, cameras::record))
-        .add_systems(EguiPrimaryContextPass, (timeline::draw, hover::tell).after(overlay::draw));
-    common::run(app)
+    (app, plan)
 }
 
 /// What is drawn without a window, if anything is.

@@ -11,6 +11,8 @@ use bevy::math::UVec2;
 use image::RgbImage;
 use std::path::{Path, PathBuf};
 
+#[cfg(test)]
+pub use run::show;
 pub use run::{Plan, run};
 
 /// Where frames go.

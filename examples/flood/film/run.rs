@@ -96,7 +96,7 @@ fn tell(done: usize, all: usize, start: Instant) {
 }
 
 /// Draws the frame at a time of the data.
-fn show(app: &mut App, plan: &Plan, time: f64) {
+pub fn show(app: &mut App, plan: &Plan, time: f64) {
     // For a screenshot the clock stands still.
     let frame = Duration::from_secs_f64(1.0 / f64::from(plan.fps));
     app.insert_resource(TimeUpdateStrategy::ManualDuration(frame));

@@ -165,7 +165,13 @@ impl FloodState {
         }
         // What cannot be read is passed over; what was shown before stays.
         self.is_late = part.is_none() && !self.ahead.has_failed(parts[0]);
-        let Some(part) = part else { return };
+        let Some(part) = part else {
+            // What waits does not rise.
+            if let Some(shown) = self.shown.as_mut().filter(|shown| shown.moment.is_rising()) {
+                shown.moment = Arc::new(shown.moment.standing());
+            }
+            return;
+        };
         // A jump is no rise.
         let most = f64::from(flood.speed.abs()) * elapsed * 1.5;
         let is_steady =
@@ -204,7 +210,11 @@ fn draw(
     for (entity, flood, mut playback, mut simulated) in &mut floods {
         let size = flood.maps().map_or(UVec2::ZERO, |maps| maps.georeference().size);
         if size.max_element() > MOST_CELLS {
-            reported.warn(entity, "Flood", format_args!("has {size} cells, more than {MOST_CELLS}; it is not drawn"));
+            reported.warn(
+                entity,
+                "Flood (its size)",
+                format_args!("has {size} cells, more than {MOST_CELLS}; it is not drawn"),
+            );
             continue;
         }
         match simulated.played_frame(playback.next.clone(), &mut images) {

@@ -34,7 +34,7 @@ struct Fragment {
     @builtin(position) position: vec4<f32>,
     @location(0) world: vec3<f32>,
     @location(1) rest: vec2<f32>, // local xz of the particle at rest
-    // Of the mesh at one vertex of the triangle, units: m. Some renderers take one level of a picture for four pixels.
+    // Of the mesh at one vertex of the triangle, units: m.
     @location(2) @interpolate(flat) spacing: f32,
 }
 
@@ -84,11 +84,12 @@ fn normal_of(slope: vec2<f32>) -> vec3<f32> {
 @fragment
 fn fragment(in: Fragment, @builtin(front_facing) from_above: bool) -> @location(0) vec4<f32> {
     let pixel = in.position.xy;
-    water::spacing = in.spacing;
-    let still = water::at(in.rest);
-    let fields = field::at(in.rest);
     let footprint = flow::Footprint(dpdx(in.rest), dpdy(in.rest));
     let pixel_size = max(length(footprint.x), length(footprint.y));
+    // Far away a pixel may show less than a triangle: its shore is that of the pixel.
+    water::spacing = min(in.spacing, pixel_size);
+    let still = water::at(in.rest);
+    let fields = field::at(in.rest);
     let drift = flow::drift(in.rest, still.current);
     let felt = frozen::felt(in.rest);
     let facet = facet(in.rest, still.depth, drift, footprint, fields.slope, felt.open);

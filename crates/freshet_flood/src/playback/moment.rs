@@ -45,6 +45,11 @@ impl Moment {
         Self { rate: is_usable.then_some(rate), ..self }
     }
 
+    /// The same water, which does not rise.
+    pub fn standing(&self) -> Self {
+        Self { rate: None, ..self.clone() }
+    }
+
     /// The steps that it lies between.
     pub fn interval(&self) -> &Arc<PlayedInterval> {
         &self.interval
