@@ -99,6 +99,7 @@ fn what_large_floods_cost() {
                     play(&mut stage.app, &maps)
                 }
             };
+            assert!(is_drawn || late == 0, "{late} frames of {side}² are late");
             let at = |share: f64| spent[((spent.len() - 1) as f64 * share) as usize];
             println!(
                 "| {side}² | {is_drawn} | {:.2} | {:.2} | {:.2} | {late} of {} |",

@@ -32,7 +32,7 @@ impl Georeferenced {
         let Some(file) = Place::file(path) else { return Ok(Self { pixels, place: Place::over(map, size) }) };
         let text = std::fs::read_to_string(&file).map_err(|problem| named(&file, &problem))?;
         let place = Place::parse(&text).map_err(|problem| named(&file, &problem))?;
-        // Where it lies and where it should: [west, south, east, north].
+        // The north-western corners of flood and image, then the south-eastern ones.
         let [here, there] = [Place::over(map, UVec2::ONE), place].map(|place| place.north_west);
         let ends = [
             here + map.size.as_dvec2() * map.cell_size * dvec2(1.0, -1.0),

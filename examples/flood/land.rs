@@ -37,6 +37,10 @@ pub struct Land {
     pub step: u32,
 }
 
+/// The image that lies on the ground, until it does.
+#[derive(Resource)]
+pub struct Cover(pub Option<Georeferenced>);
+
 /// A side of the block.
 #[derive(Component)]
 pub struct Side;
@@ -46,6 +50,7 @@ pub fn setup(
     mut commands: Commands,
     viewer: Res<Viewer>,
     arguments: Res<crate::Arguments>,
+    mut cover: ResMut<Cover>,
     device: Option<Res<RenderDevice>>,
     mut images: ResMut<Assets<Image>>,
     mut meshes: ResMut<Assets<Mesh>>,
@@ -53,12 +58,8 @@ pub fn setup(
     mut terrains: ResMut<Assets<TerrainMaterial>>,
 ) {
     let largest = device.map_or(8192, |device| device.limits().max_texture_dimension_2d);
-    let image = arguments.image.as_deref().map(|path| {
-        let read = Georeferenced::read(path, viewer.maps.georeference());
-        read.unwrap_or_else(|problem| crate::common::fail(problem))
-    });
     let tints = Tints::new(&viewer.terrain);
-    let drape = Drape::new(&viewer.terrain, viewer.maps.georeference(), image, largest.min(8192));
+    let drape = Drape::new(&viewer.terrain, viewer.maps.georeference(), cover.0.take(), largest.min(8192));
     let step = viewer.terrain.size().max_element().div_ceil(largest);
     let relief = Relief::new(&viewer, step, &mut images);
     let lit = StandardMaterial {
@@ -81,11 +82,12 @@ pub fn setup(
 
     let scale = Transform::from_scale(vec3(1.0, viewer.exaggeration, 1.0));
     let block = commands.spawn((Block, scale, Name::new("Terrain"))).id();
-    let lowest = viewer.terrain.values().iter().copied().fold(f32::MAX, f32::min);
+    let tree = Tree::new(viewer.terrain.clone());
+    let lowest = tree.bounds(tree.root()).heights.x;
     let base = lowest - PLINTH * viewer.terrain.extent().min_element() / viewer.exaggeration;
     let walls = meshes.add(terrain::walls(&viewer.terrain, base));
     commands.spawn((Side, Mesh3d(walls), MeshMaterial3d(sides[0].clone()), ChildOf(block)));
-    commands.insert_resource(Ground::new(Tree::new(viewer.terrain.clone()), block, lit.clone(), arguments.tolerance));
+    commands.insert_resource(Ground::new(tree, block, lit.clone(), arguments.tolerance));
     commands.insert_resource(relief);
     commands.insert_resource(Land { lit, sides, step });
     commands.spawn((bed(&viewer), Name::new("Bed")));

@@ -36,7 +36,9 @@ use bevy_freshet::{
 use cameras::CameraPath;
 use clap::Parser;
 use common::{Canvas, Options};
+use drape::Georeferenced;
 use film::{Output, Plan};
+use freshet_flood::flow_map::MOST_CELLS;
 use gauges::GaugesPlugin;
 use paint::PaintPlugin;
 use std::{
@@ -45,20 +47,23 @@ use std::{
 };
 use viewer::{Coloring, Viewer};
 
+/// Most frames of a film: nine hours at 30 in a second.
+const MOST_FRAMES: usize = 1_000_000;
+
 /// Plays back a flood: in a window, or, with --out or --film, into pictures.
 #[derive(Parser, Resource, Clone, Debug)]
-#[command(about)]
+#[command(about = "Plays back a flood: in a window, or, with --out or --film, into pictures")]
 struct Arguments {
     /// Folder of a converted flood. Without it the one in assets/flood/played.
     folder: Option<PathBuf>,
     /// Time in the data at which it begins, or of the picture: 90, 30min, 1.5h.
-    #[arg(long, value_parser = freshet_flood::duration::seconds)]
+    #[arg(long, value_parser = freshet_flood::duration::time, allow_hyphen_values = true)]
     at: Option<f64>,
     /// How the water is shown.
     #[arg(long, value_enum, default_value_t)]
     color: Coloring,
     /// Factor on all heights.
-    #[arg(long, default_value_t = 2.0, value_parser = factor)]
+    #[arg(long, default_value_t = 2.0, value_parser = exaggeration)]
     exaggeration: f32,
     /// Image of the ground, a PNG or JPEG: over all of it, or where its world file (.pgw, .jgw, .wld) says.
     #[arg(long)]
@@ -76,19 +81,25 @@ struct Arguments {
     #[arg(long, value_parser = Output::film, conflicts_with = "out")]
     film: Option<Output>,
     /// Frames in a second of the film.
-    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=100))]
+    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=100), requires = "film")]
     fps: u32,
     /// Time in the data at which the film begins.
-    #[arg(long, value_parser = freshet_flood::duration::seconds)]
+    #[arg(long, value_parser = freshet_flood::duration::time, allow_hyphen_values = true, requires = "film")]
     from: Option<f64>,
     /// Time in the data at which the film ends.
-    #[arg(long, value_parser = freshet_flood::duration::seconds)]
+    #[arg(long, value_parser = freshet_flood::duration::time, allow_hyphen_values = true, requires = "film")]
     to: Option<f64>,
     /// Show the depth over time at a place of the map: easting and northing, E,N. For more places again.
     #[arg(long, value_name = "E,N", value_parser = gauges::place, allow_hyphen_values = true)]
     mark: Vec<DVec2>,
     #[command(flatten)]
     options: Options,
+}
+
+/// A number from a tenth, so that wet cells keep more than a millimetre, to a hundred.
+fn exaggeration(text: &str) -> Result<f32, String> {
+    let number = text.parse::<f32>().ok().filter(|number| (0.1..=100.0).contains(number));
+    number.ok_or_else(|| format!("expected a number from 0.1 to 100, found {text:?}"))
 }
 
 /// A number from a hundredth to 10 000.
@@ -122,7 +133,7 @@ fn viewer_of(arguments: Arguments) -> (App, Option<Plan>) {
     let viewer =
         Viewer::new(maps, arguments.color, arguments.exaggeration).unwrap_or_else(|problem| common::fail(problem));
     let (first, last) = (viewer.maps.times()[0], viewer.maps.times()[viewer.maps.times().len() - 1]);
-    for (option, time) in [("--from", arguments.from), ("--to", arguments.to)] {
+    for (option, time) in [("--at", arguments.at), ("--from", arguments.from), ("--to", arguments.to)] {
         if let Some(time) = time.filter(|time| !(first..=last).contains(time)) {
             common::fail(format!("{option}: expected a time of the flood, {first} s to {last} s, found {time} s"));
         }
@@ -132,7 +143,20 @@ fn viewer_of(arguments: Arguments) -> (App, Option<Plan>) {
     {
         common::fail("a film ends (--to) after it begins (--from)");
     }
+    let size = viewer.terrain.size();
+    if size.max_element() > MOST_CELLS {
+        common::fail(format!("expected a flood of at most {MOST_CELLS} columns and rows, found {size}"));
+    }
+    let image = arguments.image.as_deref().map(|path| {
+        let read = Georeferenced::read(path, viewer.maps.georeference());
+        read.unwrap_or_else(|problem| common::fail(problem))
+    });
     let plan = plan(&arguments, &viewer.maps);
+    if let Some(frames) = plan.as_ref().map(Plan::frames).filter(|frames| *frames > MOST_FRAMES) {
+        common::fail(format!(
+            "expected a film of at most {MOST_FRAMES} frames, found {frames}: --speed makes it shorter"
+        ));
+    }
     let camera = arguments.options.camera.as_deref();
     let (path, camera) = match camera.filter(|name| name.ends_with(".ron")) {
         Some(file) => (Some(CameraPath::read(file.as_ref()).unwrap_or_else(|problem| common::fail(problem))), None),
@@ -146,6 +170,7 @@ fn viewer_of(arguments: Arguments) -> (App, Option<Plan>) {
     let mut app = common::app("bevy_freshet: flood", &options);
     let gauges = GaugesPlugin { places: arguments.mark.clone(), is_headless: plan.is_some() };
     app.insert_resource(viewer)
+        .insert_resource(land::Cover(image))
         .add_plugins((WaterPlugin, SkyPlugin, WaterPanelPlugin { visible: false, ..default() }, gauges, PaintPlugin))
         .insert_resource(arguments)
         .init_resource::<cameras::Recorded>()
@@ -171,8 +196,8 @@ fn plan(arguments: &Arguments, maps: &FloodMaps) -> Option<Plan> {
     let (first, last) = (times[0], times[times.len() - 1]);
     let plan = Plan {
         output: Output::Picture(PathBuf::new()),
-        from: arguments.from.unwrap_or(first).clamp(first, last),
-        to: arguments.to.unwrap_or(last).clamp(first, last),
+        from: arguments.from.unwrap_or(first),
+        to: arguments.to.unwrap_or(last),
         speed: f64::from(arguments.speed),
         fps: arguments.fps,
         lead: 30,

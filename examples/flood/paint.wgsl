@@ -23,6 +23,8 @@ const SPEED: u32 = 2u;
 const ARRIVAL: u32 = 3u;
 const HAZARD: u32 = 4u;
 const NEVER: f32 = 1e38;
+// Depth from which on the picture has a velocity, units: m.
+const WET: f32 = 1e-3;
 
 fn color_at(share: f32) -> vec3<f32> {
     let last = f32(textureDimensions(ramp).x - 1u);
@@ -40,7 +42,7 @@ fn danger(depth: f32, speed: f32) -> f32 {
 fn painted(cell: vec2<i32>) -> vec3<f32> {
     let here = textureLoad(water, cell, 0);
     let first = textureLoad(arrival, cell, 0).x;
-    if here.y <= 0.0 || (scale.coloring == ARRIVAL && first >= NEVER) {
+    if here.y <= WET || (scale.coloring == ARRIVAL && first >= NEVER) {
         return textureLoad(dry, cell, 0).xyz;
     }
     let depth = here.y / scale.exaggeration;

@@ -58,6 +58,11 @@ fn steer(
     if let Some(path) = path {
         *pose = path.at(flood.usable_time());
     }
+    // Also where someone has set another orbit.
+    let orbits = leader == Leader::Orbit;
+    if orbit.enabled != orbits {
+        orbit.enabled = orbits;
+    }
     if steering.leader == Some(leader) {
         return;
     }
@@ -82,7 +87,7 @@ fn flight_of(viewer: &Viewer) -> FreeCamera {
 fn around(camera: &Camera, pose: &Transform, before: &OrbitCamera, viewer: &Viewer) -> OrbitCamera {
     let middle = camera.logical_viewport_size().map(|size| 0.5 * size);
     let seen = middle.and_then(|middle| hover::ground(camera, &GlobalTransform::from(*pose), middle, viewer));
-    let distance = seen.map_or(before.distance, |seen| seen.distance(pose.translation)).clamp(1.0, 5000.0);
+    let distance = seen.map_or(before.distance, |seen| seen.distance(pose.translation)).max(1.0);
     let target = pose.translation + distance * pose.forward();
     OrbitCamera { target, distance, ..OrbitCamera::through(pose, 0.0) }
 }

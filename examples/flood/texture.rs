@@ -67,7 +67,7 @@ pub fn smooth<P: Pixel>(size: UVec2, pixels: Vec<P>) -> Image {
     image
 }
 
-/// A texture of hard cells that can be written anew.
+/// A texture of hard cells.
 pub fn cells(size: UVec2, pixels: &[[u8; 4]]) -> Image {
     let format = <[u8; 4]>::FORMAT;
     let mut image = Image::new(
@@ -75,7 +75,7 @@ pub fn cells(size: UVec2, pixels: &[[u8; 4]]) -> Image {
         TextureDimension::D2,
         pixels.as_flattened().to_vec(),
         format,
-        RenderAssetUsages::all(),
+        RenderAssetUsages::RENDER_WORLD,
     );
     image.sampler = ImageSampler::nearest();
     image

@@ -5,7 +5,7 @@ use crate::{
     viewer::{Coloring, Viewer},
 };
 use bevy::prelude::*;
-use bevy_egui::{EguiContexts, egui};
+use bevy_egui::{EguiContexts, egui, input::EguiWantsInput};
 use bevy_freshet::{flood::Flood, panel::OrbitCamera};
 use freshet_flood::duration::clock;
 
@@ -109,7 +109,10 @@ fn look(ui: &mut egui::Ui, viewer: &mut ResMut<Viewer>) {
 }
 
 /// Space plays and pauses, the arrows step.
-pub fn keys(keys: Res<ButtonInput<KeyCode>>, mut flood: Single<&mut Flood>) {
+pub fn keys(keys: Res<ButtonInput<KeyCode>>, egui: Res<EguiWantsInput>, mut flood: Single<&mut Flood>) {
+    if egui.wants_keyboard_input() {
+        return;
+    }
     if keys.just_pressed(KeyCode::Space) {
         toggle(&mut flood);
     }

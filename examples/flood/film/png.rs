@@ -49,7 +49,7 @@ impl Sink for Pictures {
 
 /// The name of a frame; `None` if the pattern has no place for its number.
 pub fn numbered(pattern: &str, frame: usize) -> Option<String> {
-    let (before, rest) = pattern.split_once('%')?;
+    let (before, rest) = pattern.rsplit_once('%')?;
     let (digits, after) = rest.split_once('d')?;
     let width = if digits.is_empty() { 0 } else { digits.parse::<usize>().ok().filter(|width| *width < 20)? };
     Some(format!("{before}{frame:0width$}{after}"))

@@ -14,7 +14,7 @@ use std::{
 };
 
 /// What is drawn.
-#[derive(Resource, Clone, Debug)]
+#[derive(Clone, Debug)]
 pub struct Plan {
     pub output: Output,
     /// Times in the data of the first and the last frame, s.
@@ -29,14 +29,25 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// How many frames there are.
+    pub fn frames(&self) -> usize {
+        match self.output {
+            Output::Picture(_) => 1,
+            _ => ((self.to - self.from) / self.step() + 1e-9).floor().max(0.0) as usize + 1,
+        }
+    }
+
+    /// From one frame to the next, s in the data.
+    fn step(&self) -> f64 {
+        self.speed / f64::from(self.fps)
+    }
+
     /// Times of the frames, s in the data.
     fn times(&self) -> Vec<f64> {
         if matches!(self.output, Output::Picture(_)) {
             return vec![self.to];
         }
-        let step = self.speed / f64::from(self.fps);
-        let count = ((self.to - self.from) / step + 1e-9).floor().max(0.0) as usize + 1;
-        (0..count).map(|frame| self.from + frame as f64 * step).collect()
+        (0..self.frames()).map(|frame| self.from + frame as f64 * self.step()).collect()
     }
 }
 
@@ -56,9 +67,8 @@ fn draw(app: &mut App, plan: &Plan) -> Result<(), String> {
     // First of all, so that a name that cannot be written is told at once.
     let mut sink = plan.output.open(Clip { size, fps: plan.fps, frames: times.len() })?;
     common::start(app);
-    let step = plan.speed / f64::from(plan.fps);
     for before in (1..=plan.lead).rev() {
-        show(app, plan, times[0] - f64::from(before) * step);
+        show(app, plan, times[0] - f64::from(before) * plan.step());
     }
     let (start, mut written) = (Instant::now(), Duration::ZERO);
     for (number, time) in times.iter().enumerate() {

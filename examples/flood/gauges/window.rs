@@ -108,7 +108,11 @@ fn lines(ui: &mut Ui, gauges: &[Gauge], flood: &Flood) {
         .x_axis_formatter(|mark, _| clock(mark.value))
         .x_grid_spacer(uniform_grid_spacer(|input| {
             let index = SPACES.iter().position(|space| *space >= input.base_step_size).unwrap_or(SPACES.len());
-            [0, 1, 2].map(|more| SPACES[(index + more).min(SPACES.len() - 1)])
+            match SPACES.get(index..index + 3) {
+                Some(spaces) => [spaces[0], spaces[1], spaces[2]],
+                // Farther away than years.
+                None => [1.0, 10.0, 100.0].map(|factor| factor * input.base_step_size),
+            }
         }))
         .label_formatter(|hover| {
             let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = hover;

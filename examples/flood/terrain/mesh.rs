@@ -24,7 +24,8 @@ pub fn bounds(tree: &Tree, tile: Tile) -> Aabb {
 /// The triangles of a tile. Its normals point up: those of the ground are a texture, the same on all levels. uv go from 0
 /// in the north-west of the terrain to 1 in its south-east.
 pub fn mesh(tree: &Tree, tile: Tile) -> Mesh {
-    let mut builder = Builder { extent: tree.levels.terrain().extent(), ..default() };
+    let mut builder =
+        Builder { extent: tree.levels.terrain().extent(), floor: tree.bounds(tree.root()).heights.x, ..default() };
     let [columns, rows] = lines(tree, tile);
     for row in &rows {
         for column in &columns {
@@ -70,6 +71,8 @@ fn lines(tree: &Tree, tile: Tile) -> [Vec<Line>; 2] {
 #[derive(Default)]
 struct Builder {
     extent: Vec2,
+    /// Skirts reach no lower, m.
+    floor: f32,
     positions: Vec<Vec3>,
     indices: Vec<u16>,
 }
@@ -103,8 +106,12 @@ impl Builder {
     /// A skirt that is seen from the left of `edge`.
     fn skirt(&mut self, edge: Vec<u16>, depth: f32) {
         let below = self.positions.len() as u16;
-        let sunk: Vec<Vec3> =
-            edge.iter().map(|vertex| self.positions[usize::from(*vertex)] - depth * Vec3::Y).collect();
+        let sunk: Vec<Vec3> = edge
+            .iter()
+            .map(|vertex| self.positions[usize::from(*vertex)])
+            // No tile is lower than the floor.
+            .map(|place| place.with_y((place.y - depth).max(self.floor)))
+            .collect();
         self.positions.extend(sunk);
         for (index, pair) in edge.windows(2).enumerate() {
             let (a, b) = (below + index as u16, below + index as u16 + 1);

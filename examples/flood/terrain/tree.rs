@@ -118,7 +118,7 @@ impl Tree {
         self.children(tile).map(|child| self.bounds(child)).fold(Bounds { error, most, heights }, |all, child| Bounds {
             error: all.error.max(child.error),
             most: all.most.max(child.most),
-            ..all
+            heights: vec2(all.heights.x.min(child.heights.x), all.heights.y.max(child.heights.y)),
         })
     }
 }

@@ -117,7 +117,7 @@ impl FloodState {
 
     /// The same on the GPU, for materials of one's own: level (m), depth (m) and velocity to the east and the south (m/s) of every cell, as
     /// [`TextureFormat::Rgba32Float`](bevy::render::render_resource::TextureFormat::Rgba32Float), drawn anew before the cameras
-    /// whenever the water changes. The velocity is undefined where the depth is 0. `None` until it is there, or if nothing is drawn.
+    /// whenever the water changes. The velocity is undefined where the depth is at most 1 mm. `None` until it is there, or if nothing is drawn.
     pub fn picture(&self) -> Option<&Handle<Image>> {
         self.picture.as_ref()
     }
@@ -215,6 +215,8 @@ fn draw(
                 "Flood (its size)",
                 format_args!("has {size} cells, more than {MOST_CELLS}; it is not drawn"),
             );
+            playback.picture = None;
+            commands.entity(entity).try_remove::<ShallowFrame>();
             continue;
         }
         match simulated.played_frame(playback.next.clone(), &mut images) {

@@ -60,7 +60,7 @@ impl OrbitCamera {
             |value: f32, low: f32, high: f32, else_: f32| if value.is_nan() { else_ } else { value.clamp(low, high) };
         Self {
             target: if self.target.is_finite() { self.target } else { usual.target },
-            distance: number(self.distance, 0.5, 1e5, usual.distance),
+            distance: number(self.distance, 0.5, 1e7, usual.distance),
             // Straight up and down have no bearing.
             elevation: number(self.elevation, -FRAC_PI_2 + 0.02, FRAC_PI_2 - 0.02, usual.elevation),
             azimuth: if self.azimuth.is_finite() { self.azimuth % TAU } else { usual.azimuth },

@@ -78,7 +78,7 @@ impl Plugin for StagesPlugin {
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "scheme.wgsl");
         load_shader_library!(app, "cells.wgsl");
-        load_shader_library!(app, "played/played.wgsl");
+        played::load_library(app);
         embedded_asset!(app, "border.wgsl");
         embedded_asset!(app, "coarsen.wgsl");
         embedded_asset!(app, "push.wgsl");

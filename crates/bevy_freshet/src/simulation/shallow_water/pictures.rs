@@ -48,7 +48,7 @@ pub(super) fn level_of(picture: &GpuImage, level: u32) -> TextureView {
     })
 }
 
-/// Draws the pictures of those waters that the CPU simulates, and plans the coarser levels of what is new.
+/// Draws the pictures of those waters whose cells the CPU has, and plans the coarser levels of what is new.
 pub(super) fn draw_pictures(
     mut commands: Commands,
     stages: Res<Stages>,

@@ -1,4 +1,4 @@
-// Stage: pictures of the water for the surface's shader. The twin is `Field` in `freshet_hydro::shallow_water`.
+// Stage: pictures of the water for the surface's shader. The twins are `Field` in `freshet_hydro::shallow_water`, and `Moment` in `freshet_flood`.
 #ifdef PLAYED
 #import freshet::simulation::shallow_water::played::{numbers, primitive}
 #else

@@ -10,9 +10,14 @@ pub(super) use stage::{Played, forget_played, plan_played, played_layout, run_pl
 
 use super::{Simulated, driver::pictures_of, frame::ShallowFrame, frame::ShallowWork};
 use crate::body::{ResolvedSimulation, SimulatedArea, SimulatedWater};
-use bevy::prelude::*;
+use bevy::{prelude::*, shader::load_shader_library};
 use freshet_flood::playback::PlayedInterval;
 use std::sync::Arc;
+
+/// Loads what the stage imports.
+pub(super) fn load_library(app: &mut App) {
+    load_shader_library!(app, "played.wgsl");
+}
 
 impl Simulated {
     /// Shows `water` on all of a water of this size (m) where nothing is simulated.

@@ -110,7 +110,7 @@ impl<T: Texels> Filled<T> {
     fn fill(&mut self, size: UVec2, budget: &mut usize, queue: &RenderQueue) {
         let bytes = self.source.bytes();
         let row = bytes.len() / size.y as usize;
-        let rows = (size.y - self.rows).min((*budget / row.max(1)) as u32);
+        let rows = (size.y - self.rows).min(u32::try_from(*budget / row.max(1)).unwrap_or(u32::MAX));
         if rows == 0 || row == 0 {
             return;
         }
