@@ -81,13 +81,13 @@ struct Arguments {
     #[arg(long, value_parser = Output::film, conflicts_with = "out")]
     film: Option<Output>,
     /// Frames in a second of the film.
-    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=100), requires = "film")]
+    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=100), requires = "film", conflicts_with = "out")]
     fps: u32,
     /// Time in the data at which the film begins.
-    #[arg(long, value_parser = freshet_flood::duration::time, allow_hyphen_values = true, requires = "film")]
+    #[arg(long, value_parser = freshet_flood::duration::time, allow_hyphen_values = true, requires = "film", conflicts_with = "out")]
     from: Option<f64>,
     /// Time in the data at which the film ends.
-    #[arg(long, value_parser = freshet_flood::duration::time, allow_hyphen_values = true, requires = "film")]
+    #[arg(long, value_parser = freshet_flood::duration::time, allow_hyphen_values = true, requires = "film", conflicts_with = "out")]
     to: Option<f64>,
     /// Show the depth over time at a place of the map: easting and northing, E,N. For more places again.
     #[arg(long, value_name = "E,N", value_parser = gauges::place, allow_hyphen_values = true)]
