@@ -3,12 +3,13 @@
 #[path = "../../../../tests/stage.rs"]
 pub(super) mod stage;
 
+pub(super) mod readback;
+
 use super::*;
 use crate::{
     body::{ResolvedWater, Water, WaterBed, WaterFlow, WaterFoam, WaterInteraction, WaterWaves, Wave},
     surface::WaterSurface,
 };
-use bevy::render::gpu_readback::{Readback, ReadbackComplete};
 use freshet_hydro::{
     fields::{
         Cells,
@@ -26,9 +27,6 @@ struct Basin {
     water: Entity,
 }
 
-#[derive(Resource, Default)]
-struct Read(Option<Vec<u8>>);
-
 /// What acts on the water, instead of what is in the scene.
 #[derive(Resource, Default)]
 struct Given(Deposits);
@@ -40,7 +38,7 @@ fn give(given: Res<Given>, mut waters: Query<&mut Deposits>) {
 impl Basin {
     fn new(size: Vec2, bed: Option<WaterBed>, settings: impl Bundle) -> Self {
         let mut stage = Stage::new();
-        stage.app.init_resource::<Read>().init_resource::<Given>();
+        stage.app.init_resource::<Given>();
         stage.app.add_systems(PostUpdate, give.after(FieldSystems::Deposit).before(FieldSystems::Step));
         if let Some(bed) = bed {
             stage.spawn(bed);
@@ -76,20 +74,8 @@ impl Basin {
 
     fn read(&mut self, picture: Handle<Image>) -> Vec<Vec4> {
         let size = self.cells().size;
-        let reader = self.stage.spawn(Readback::texture(picture));
-        self.stage
-            .app
-            .world_mut()
-            .entity_mut(reader)
-            .observe(|read: On<ReadbackComplete>, mut to: ResMut<Read>| to.0 = Some(read.data.clone()));
-        for _ in 0..20 {
-            self.stage.app.update();
-            if let Some(data) = self.stage.app.world_mut().resource_mut::<Read>().0.take() {
-                self.stage.app.world_mut().despawn(reader);
-                return texels(&data, size);
-            }
-        }
-        panic!("nothing was read");
+        let data = readback::read(&mut self.stage, &picture);
+        readback::texels(&data, size, 8).map(readback::halves).collect()
     }
 
     fn rings(&mut self) -> Vec<Vec4> {
@@ -99,14 +85,6 @@ impl Basin {
     fn matter(&mut self) -> Vec<Vec4> {
         self.read(self.get::<FieldPictures>().matter.clone().unwrap())
     }
-}
-
-/// Texels of rows that are padded to 256 bytes, or not.
-fn texels(data: &[u8], size: UVec2) -> Vec<Vec4> {
-    let half = |bytes: &[u8]| half::f16::from_le_bytes([bytes[0], bytes[1]]).to_f32();
-    let texel = |t: &[u8]| vec4(half(&t[0..2]), half(&t[2..4]), half(&t[4..6]), half(&t[6..8]));
-    let row = data.len() / size.y as usize;
-    data.chunks_exact(row).flat_map(|row| row[..size.x as usize * 8].chunks_exact(8).map(texel)).collect()
 }
 
 fn stroke(place: Vec2, radius: f32) -> Stroke {

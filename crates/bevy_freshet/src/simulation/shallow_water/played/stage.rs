@@ -24,8 +24,8 @@ use freshet_flood::playback::{Ground, Moment, PlayedInterval, PlayedStep};
 use freshet_hydro::shallow_water::WaterCells;
 use std::sync::Arc;
 
-/// Bytes that are handed over in a frame of what is shown only later. A step of a million cells takes three frames.
-const AHEAD: usize = 4 << 20;
+/// Bytes that are handed over in a frame of what is shown only later. A step of a million cells takes three frames; so does a small one in tests.
+const AHEAD: usize = if cfg!(test) { 1 << 16 } else { 4 << 20 };
 
 /// What the GPU has of a flood.
 #[derive(Component)]
@@ -119,6 +119,12 @@ impl Played {
         numbers.set_label(Some("water_flood_numbers"));
         let (ground, steps, turns) = (Textures::new(size), Textures::new(size), Textures::new(size));
         Self { ground, steps, turns, numbers, size, drawn: None, groups: None }
+    }
+
+    /// Rows of a part's second step and of its turns that are there.
+    #[cfg(test)]
+    pub fn rows(&self, part: &Arc<PlayedInterval>) -> [u32; 2] {
+        [self.steps.rows(&part.steps[1]), self.turns.rows(part)]
     }
 
     /// Whether its pictures are drawn in this frame.

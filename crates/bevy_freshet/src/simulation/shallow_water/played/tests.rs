@@ -1,10 +1,13 @@
 //! The stage against its twin.
 use super::{
-    super::{super::tests::stage::Stage, StagesPlugin, frame},
+    super::{
+        super::tests::{readback, stage::Stage},
+        StagesPlugin, frame,
+    },
     stage::GpuPlayed,
     *,
 };
-use bevy::render::gpu_readback::{Readback, ReadbackComplete};
+use bevy::render::RenderApp;
 use freshet_flood::{maps::FloodMaps, playback::Moment};
 use freshet_hydro::shallow_water::{WET, WaterCells};
 use std::path::Path;
@@ -18,15 +21,11 @@ struct Drawn {
     pictures: [Handle<Image>; 2],
 }
 
-/// What was read of a picture.
-#[derive(Resource, Default)]
-struct Read(Option<Vec<u8>>);
-
 impl Drawn {
     fn new() -> Self {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/flood/played");
         let maps = FloodMaps::open(folder).unwrap();
-        let mut stage = Stage::with(|app| _ = app.add_plugins(StagesPlugin).init_resource::<Read>());
+        let mut stage = Stage::with(|app| _ = app.add_plugins(StagesPlugin));
         let mut images = stage.app.world_mut().resource_mut::<Assets<Image>>();
         let pictures = frame::pictures(maps.georeference().size).map(|image| images.add(image));
         let entity = stage.spawn(());
@@ -51,38 +50,20 @@ impl Drawn {
         (0..frames).for_each(|_| self.stage.app.update());
     }
 
-    fn read(&mut self, picture: usize) -> Vec<u8> {
-        let reader = self.stage.spawn(Readback::texture(self.pictures[picture].clone()));
-        let world = self.stage.app.world_mut();
-        world
-            .entity_mut(reader)
-            .observe(|read: On<ReadbackComplete>, mut to: ResMut<Read>| to.0 = Some(read.data.clone()));
-        for _ in 0..20 {
-            self.stage.app.update();
-            if let Some(data) = self.stage.app.world_mut().resource_mut::<Read>().0.take() {
-                self.stage.app.world_mut().despawn(reader);
-                return data;
-            }
-        }
-        panic!("nothing was read");
+    /// Rows of a part's second step and of its turns that the GPU has.
+    fn rows(&mut self, part: &Arc<PlayedInterval>) -> [u32; 2] {
+        let world = self.stage.app.sub_app_mut(RenderApp).world_mut();
+        world.query::<&Played>().single(world).unwrap().rows(part)
     }
 
     /// Level, depth and velocity of every cell in the picture, and its slope.
     fn cells(&mut self) -> Vec<(Vec4, Vec2)> {
         let size = self.maps.georeference().size;
-        let rows = |data: &[u8], texel: usize| -> Vec<Vec<u8>> {
-            let row = data.len() / size.y as usize;
-            let rows = data.chunks_exact(row);
-            rows.flat_map(|row| row[..size.x as usize * texel].chunks_exact(texel).map(<[u8]>::to_vec)).collect()
-        };
-        let (cells, slopes) = (rows(&self.read(0), 16), rows(&self.read(1), 8));
-        let single = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-        let half = |bytes: &[u8]| half::f16::from_le_bytes([bytes[0], bytes[1]]).to_f32();
-        let cell = |(cell, slope): (&Vec<u8>, &Vec<u8>)| {
-            let numbers: Vec<f32> = cell.chunks_exact(4).map(single).collect();
-            (Vec4::from_slice(&numbers), vec2(half(&slope[0..2]), half(&slope[2..4])))
-        };
-        cells.iter().zip(&slopes).map(cell).collect()
+        let [cells, slopes] = self.pictures.each_ref().map(|picture| readback::read(&mut self.stage, picture));
+        let single = |texel: &[u8], at: usize| f32::from_le_bytes([0, 1, 2, 3].map(|byte| texel[at + byte]));
+        let cells =
+            readback::texels(&cells, size, 16).map(|cell| Vec4::from_array([0, 4, 8, 12].map(|at| single(cell, at))));
+        cells.zip(readback::texels(&slopes, size, 8).map(|slope| readback::halves(slope).xy())).collect()
     }
 
     /// Fails where the picture is not that of `moment`; says how many cells are wet.
@@ -126,7 +107,8 @@ fn what_comes_next_is_there_when_it_comes() {
     let mut drawn = Drawn::new();
     let (first, next) = (drawn.part(5), drawn.part(6));
     let times = drawn.maps.times().to_vec();
-    drawn.draw(&Arc::new(Moment::new(first, times[5] + 1.0, 1.0)), Some(next.clone()), 3);
+    drawn.draw(&Arc::new(Moment::new(first, times[5] + 1.0, 1.0)), Some(next.clone()), 20);
+    assert_eq!(drawn.rows(&next), [next.size.y; 2], "it is not handed over in time");
     let moment = Arc::new(Moment::new(next, times[6] + 30.0, 1.0));
     drawn.draw(&moment, None, 1);
     assert!(drawn.compare(&moment) > 300);

@@ -1,11 +1,13 @@
 //! What is known of the steps of a flood, in textures.
-use bevy::prelude::*;
-use bevy::render::{
-    render_resource::{
-        Extent3d, Origin3d, TexelCopyBufferLayout, Texture, TextureDescriptor, TextureDimension, TextureFormat,
-        TextureUsages, TextureView,
+use bevy::{
+    prelude::*,
+    render::{
+        render_resource::{
+            Extent3d, Origin3d, TexelCopyBufferLayout, Texture, TextureDescriptor, TextureDimension, TextureFormat,
+            TextureUsages, TextureView,
+        },
+        renderer::{RenderDevice, RenderQueue},
     },
-    renderer::{RenderDevice, RenderQueue},
 };
 use freshet_flood::playback::{Ground, PlayedInterval, PlayedStep};
 use std::sync::Arc;
@@ -80,8 +82,15 @@ impl<T: Texels> Textures<T> {
 
     /// The texture of `source`, all of it there.
     pub fn view(&mut self, source: &Arc<T>, queue: &RenderQueue) -> Option<&TextureView> {
-        self.fill(source, &mut usize::MAX.clone(), queue);
+        let mut all = usize::MAX;
+        self.fill(source, &mut all, queue);
         self.textures.iter().find(|filled| Arc::ptr_eq(&filled.source, source)).map(|filled| &filled.view)
+    }
+
+    /// Rows of `source` that are there.
+    #[cfg(test)]
+    pub fn rows(&self, source: &Arc<T>) -> u32 {
+        self.textures.iter().find(|filled| Arc::ptr_eq(&filled.source, source)).map_or(0, |filled| filled.rows)
     }
 
     /// Fills the texture of `source` as far as so many bytes go.
