@@ -45,7 +45,7 @@ impl PlayedStep {
     pub fn read(maps: &FloodMaps, ground: &Ground, index: usize) -> Result<Self, MapsError> {
         let (depth, velocity) = (maps.depth(index)?, velocities(maps, ground, index)?);
         let cell = |place: usize, depth: f32| {
-            let is_known = ground.elevations.get(place).is_some_and(|elevation| *elevation < BANK);
+            let is_known = ground.elevations.get(place).is_some_and(|elevation| *elevation != BANK);
             let velocity = velocity.as_ref().and_then(|velocity| velocity.get(place)).copied().unwrap_or_default();
             let velocity = if velocity.is_finite() { velocity } else { Vec2::ZERO };
             PlayedCell {
