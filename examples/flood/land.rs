@@ -61,7 +61,7 @@ pub fn setup(
     let tints = Tints::new(&viewer.terrain);
     let drape = Drape::new(&viewer.terrain, viewer.maps.georeference(), cover.0.take(), largest.min(8192));
     let step = viewer.terrain.size().max_element().div_ceil(largest);
-    let relief = Relief::new(&viewer, step, &mut images);
+    let relief = Relief::new(&viewer, &tints.normals, step, &mut images);
     let lit = StandardMaterial {
         base_color_texture: Some(images.add(drape.texture(&tints))),
         normal_map_texture: Some(relief.texture().clone()),

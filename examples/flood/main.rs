@@ -194,23 +194,22 @@ fn viewer_of(arguments: Arguments) -> (App, Option<Plan>) {
 fn plan(arguments: &Arguments, maps: &FloodMaps) -> Option<Plan> {
     let times = maps.times();
     let (first, last) = (times[0], times[times.len() - 1]);
-    let plan = Plan {
-        output: Output::Picture(PathBuf::new()),
+    let film = |output| Plan {
+        output,
         from: arguments.from.unwrap_or(first),
         to: arguments.to.unwrap_or(last),
         speed: f64::from(arguments.speed),
         fps: arguments.fps,
         lead: 30,
     };
-    let out = arguments.options.out.clone();
-    let picture = |out| Plan {
-        output: Output::Picture(out),
-        to: arguments.at.unwrap_or(0.5 * (first + last)).clamp(first, last),
+    let picture = |output| Plan {
+        to: arguments.at.unwrap_or(0.5 * (first + last)),
         lead: arguments.options.frames,
         fps: 60,
-        ..plan.clone()
+        ..film(output)
     };
-    out.map(picture).or(arguments.film.clone().map(|output| Plan { output, ..plan.clone() }))
+    let out = arguments.options.out.clone().map(|path| picture(Output::Picture(path)));
+    out.or_else(|| arguments.film.clone().map(film))
 }
 
 /// Sets the flood going.

@@ -5,6 +5,7 @@ use bevy::{
     render::render_resource::TextureFormat,
     tasks::{AsyncComputeTaskPool, Task, block_on},
 };
+use freshet_flood::terrain::normals;
 use freshet_hydro::grid::Grid;
 use std::sync::Arc;
 
@@ -42,8 +43,9 @@ impl texture::Pixel for Packed {
 }
 
 impl Relief {
-    pub fn new(viewer: &Viewer, step: u32, images: &mut Assets<Image>) -> Self {
-        let texture = images.add(texture_of(&viewer.terrain, step, viewer.exaggeration));
+    /// `normals` are those of the terrain.
+    pub fn new(viewer: &Viewer, normals: &Grid<Vec3>, step: u32, images: &mut Assets<Image>) -> Self {
+        let texture = images.add(texture_of(normals, step, viewer.exaggeration));
         Self { texture, exaggeration: viewer.exaggeration, making: None }
     }
 
@@ -53,9 +55,8 @@ impl Relief {
 }
 
 /// Normals of every `step`-th cell of a terrain that is `exaggeration` times as high: east, south and up, as the tangents of tiles point.
-fn texture_of(terrain: &Grid<f32>, step: u32, exaggeration: f32) -> Image {
-    let size = (terrain.size() + (step - 1)) / step;
-    let normals = freshet_flood::terrain::normals(terrain);
+fn texture_of(normals: &Grid<Vec3>, step: u32, exaggeration: f32) -> Image {
+    let size = (normals.size() + (step - 1)) / step;
     let pixel = |at: UVec2| {
         let normal = normals.get(at * step).copied().unwrap_or(Vec3::Y);
         Packed::new(vec3(normal.x * exaggeration, normal.z * exaggeration, normal.y).normalize())
@@ -82,7 +83,7 @@ pub fn follow(
     }
     if relief.making.is_none() && relief.exaggeration != viewer.exaggeration {
         let (terrain, step, exaggeration): (Arc<_>, _, _) = (viewer.terrain.clone(), land.step, viewer.exaggeration);
-        let task = AsyncComputeTaskPool::get().spawn(async move { texture_of(&terrain, step, exaggeration) });
+        let task = AsyncComputeTaskPool::get().spawn(async move { texture_of(&normals(&terrain), step, exaggeration) });
         relief.making = Some((exaggeration, task));
     }
 }

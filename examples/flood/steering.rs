@@ -58,7 +58,7 @@ fn steer(
     if let Some(path) = path {
         *pose = path.at(flood.usable_time());
     }
-    // Also where someone has set another orbit.
+    // While it is enabled, the flight rests; the panel's plugin sees to that, and to what egui wants. Buttons set orbits that are.
     let orbits = leader == Leader::Orbit;
     if orbit.enabled != orbits {
         orbit.enabled = orbits;
@@ -72,8 +72,6 @@ fn steer(
         Leader::Orbit if steering.leader.is_some() => *orbit = around(camera, &pose, &orbit, &viewer),
         _ => {}
     }
-    // While it is enabled, the flight rests; the panel's plugin sees to that, and to what egui wants.
-    orbit.enabled = leader == Leader::Orbit;
     steering.leader = Some(leader);
 }
 
@@ -160,6 +158,10 @@ mod tests {
         play(&mut app, true);
         let led = *app.world().get::<Transform>(camera).expect("a pose");
         assert_eq!(led, app.world().resource::<CameraPath>().at(0.0));
+        assert!(!orbit(&app, camera).enabled);
+        // Also where a button asks for another orbit meanwhile.
+        app.world_mut().entity_mut(camera).insert(OrbitCamera { distance: 50.0, ..default() });
+        app.update();
         assert!(!orbit(&app, camera).enabled);
         play(&mut app, false);
         assert!(orbit(&app, camera).enabled && orbit(&app, camera).pose().translation.distance(led.translation) < 0.1);

@@ -3,6 +3,9 @@ use super::{Clip, Sink, named, whole::Whole};
 use image::RgbImage;
 use std::path::{Path, PathBuf};
 
+/// Most frames in a second: browsers show shorter ones than 2/100 s for a tenth.
+const FASTEST: u32 = 50;
+
 /// A GIF that is written frame by frame.
 pub struct Gif {
     path: PathBuf,
@@ -15,6 +18,10 @@ impl Gif {
     /// # Errors
     /// Why it cannot be written there.
     pub fn create(path: &Path, clip: Clip) -> Result<Self, String> {
+        if clip.fps > FASTEST {
+            let problem = format!("expected at most {FASTEST} frames a second of a GIF, found {}", clip.fps);
+            return Err(named(path)(&problem));
+        }
         let [width, height] = clip.size.to_array().map(|side| side as u16);
         let file = Whole::create(path)?;
         let encoder = gif::Encoder::new(file, width, height, &[]).and_then(|mut encoder| {

@@ -55,7 +55,7 @@ impl Plan {
 pub fn run(mut app: App, plan: &Plan) -> AppExit {
     let drawn = draw(&mut app, plan);
     if let Err(problem) = drawn {
-        error!("{problem}");
+        eprintln!("error: {problem}");
         return AppExit::error();
     }
     AppExit::Success

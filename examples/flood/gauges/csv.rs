@@ -2,7 +2,7 @@
 use super::Gauge;
 use std::fmt::Write;
 
-/// A line of names, and one for each step: its time in seconds, and the depth at each gauge in metres. Cells that are not known yet are empty.
+/// A line of names, and one for each step: its time in seconds, and the depth at each gauge in metres. Cells of a gauge that cannot be read are empty.
 pub fn table(times: &[f64], gauges: &[Gauge]) -> String {
     let mut text = String::from("time s");
     for gauge in gauges {

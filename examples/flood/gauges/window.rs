@@ -83,7 +83,7 @@ pub fn plot(
 
 /// What can be done with them.
 fn buttons(ui: &mut Ui, viewer: &Viewer, gauges: &mut Gauges) {
-    let is_known = gauges.list.iter().all(|gauge| gauge.series().is_some());
+    let is_known = gauges.list.iter().all(|gauge| !matches!(gauge.depths, Depths::Unread));
     if ui.add_enabled(is_known, egui::Button::new("Save CSV")).on_hover_text(TABLE).clicked() {
         let saved = std::fs::write(TABLE, csv::table(viewer.maps.times(), &gauges.list));
         gauges.said = Some(saved.map_or_else(|problem| format!("{TABLE}: {problem}"), |()| format!("saved {TABLE}")));

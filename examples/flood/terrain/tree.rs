@@ -1,6 +1,7 @@
 //! The terrain as a quadtree of tiles: where each lies, and by how much it is off.
 use bevy::prelude::*;
-use freshet_hydro::levels::Levels;
+use freshet_hydro::{grid::Grid, levels::Levels};
+use std::sync::Arc;
 
 /// Quads along a side of a tile.
 pub const TILE: u32 = 64;
@@ -43,7 +44,7 @@ pub struct Tree {
 
 impl Tree {
     /// The tiles of a terrain whose elevations are all finite.
-    pub fn new(terrain: std::sync::Arc<freshet_hydro::grid::Grid<f32>>) -> Self {
+    pub fn new(terrain: Arc<Grid<f32>>) -> Self {
         let quads = (terrain.size().max_element() - 1).max(1);
         let root = quads.div_ceil(TILE).next_power_of_two().ilog2();
         let mut tree = Self { levels: Levels::new(terrain, root), tiles: Vec::new() };
@@ -126,7 +127,7 @@ impl Tree {
 #[cfg(test)]
 pub mod tests {
     use super::*;
-    use freshet_hydro::{grid::Grid, noise::fractal_noise};
+    use freshet_hydro::noise::fractal_noise;
 
     /// Rolling land of cells of 2 m.
     pub fn tree(size: UVec2) -> Tree {
